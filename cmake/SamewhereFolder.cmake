@@ -1,0 +1,44 @@
+# samewhere_folder(NAME LINKS target...)
+#
+# One folder of src/samewhere is one library `samewhere_NAME` (alias samewhere::NAME): its *.cpp, linked to
+# nothing but LINKS. Its *_test.cpp become `samewhere_NAME_test`. Which folder may link which is the layering of
+# docs/design.md; `./run lint` checks it on the #includes.
+
+add_library(samewhere_options INTERFACE)
+target_compile_options(samewhere_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  # one rounding per operation: the same result on every build of the same source
+  -ffp-contract=off
+  $<$<BOOL:${SAMEWHERE_WERROR}>:-Werror>)
+target_include_directories(samewhere_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+if(SAMEWHERE_SANITIZE)
+  target_compile_options(samewhere_options INTERFACE -fsanitize=${SAMEWHERE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(samewhere_options INTERFACE -fsanitize=${SAMEWHERE_SANITIZE})
+endif()
+
+function(samewhere_folder NAME)
+  cmake_parse_arguments(FOLDER "" "" "LINKS;TEST_LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
+  file(GLOB benches CONFIGURE_DEPENDS *_bench.cpp)
+  list(REMOVE_ITEM sources ${tests} ${benches})
+  if(sources)
+    add_library(samewhere_${NAME} STATIC ${sources})
+    target_link_libraries(samewhere_${NAME} PUBLIC samewhere_options ${FOLDER_LINKS})
+  else()
+    add_library(samewhere_${NAME} INTERFACE)
+    target_link_libraries(samewhere_${NAME} INTERFACE samewhere_options ${FOLDER_LINKS})
+  endif()
+  add_library(samewhere::${NAME} ALIAS samewhere_${NAME})
+  if(SAMEWHERE_TESTS AND tests)
+    samewhere_test(samewhere_${NAME}_test SOURCES ${tests} LINKS samewhere::${NAME} ${FOLDER_TEST_LINKS})
+  endif()
+endfunction()
+
+# samewhere_test(NAME SOURCES file... LINKS target...): one GoogleTest program, whose cases ctest runs and counts one by one.
+function(samewhere_test NAME)
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${NAME} ${TEST_SOURCES})
+  target_link_libraries(${NAME} PRIVATE ${TEST_LINKS} samewhere_options GTest::gtest_main GTest::gmock)
+  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()

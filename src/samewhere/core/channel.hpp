@@ -1,0 +1,58 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include <samewhere/core/errors.hpp>
+
+namespace samewhere::core {
+
+// A bounded queue between two threads. The writer waits while it is full, the reader while it is
+// empty. After close() the reader gets what is left, then nothing; a writer is told that nobody
+// listens.
+template <class T>
+class Channel {
+ public:
+  explicit Channel(std::size_t capacity) : capacity_(capacity) {
+    require(capacity > 0, "a Channel holds at least one message");
+  }
+
+  // False if the channel is closed: the message is dropped.
+  bool send(T message) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return is_closed_ || messages_.size() < capacity_; });
+    if (is_closed_) return false;
+    messages_.push_back(std::move(message));
+    changed_.notify_all();
+    return true;
+  }
+
+  // Nothing if the channel is closed and empty.
+  std::optional<T> receive() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return is_closed_ || !messages_.empty(); });
+    if (messages_.empty()) return std::nullopt;
+    std::optional<T> message(std::move(messages_.front()));
+    messages_.pop_front();
+    changed_.notify_all();
+    return message;
+  }
+
+  void close() {
+    const std::lock_guard lock(mutex_);
+    is_closed_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  const std::size_t capacity_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<T> messages_;
+  bool is_closed_ = false;
+};
+
+}  // namespace samewhere::core

@@ -1,0 +1,297 @@
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <samewhere/core/config.hpp>
+#include <samewhere/core/errors.hpp>
+
+namespace samewhere::core {
+namespace {
+
+std::string joined(const std::vector<std::string_view>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string range_text(const FieldInfo& info) {
+  if (!info.choices.empty()) return joined(info.choices);
+  if (info.min && info.max) return fmt::format("[{}, {}]", *info.min, *info.max);
+  if (info.min) return fmt::format(">= {}", *info.min);
+  if (info.max) return fmt::format("<= {}", *info.max);
+  return "";
+}
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::DoubleQuoted << text;
+  return out.c_str();
+}
+
+// A double that reads back to itself and never looks like an integer.
+std::string number_text(double value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+// Keeps track of the dotted path of sections.
+class PathVisitor : public FieldVisitor {
+ protected:
+  std::string path(std::string_view name) const {
+    std::string text;
+    for (const auto& section : sections_) text += section + ".";
+    return text + std::string(name);
+  }
+
+  std::vector<std::string> sections_;
+};
+
+class Reader : public PathVisitor {
+ public:
+  Reader(YAML::Node root, std::string origin) : origin_(std::move(origin)) {
+    nodes_.push_back(std::move(root));
+    known_.emplace_back();
+    check_is_map(nodes_.back(), "the configuration");
+  }
+
+  void finish() { check_unknown_keys(); }
+
+ protected:
+  void value(std::string_view name, bool& field, const FieldInfo& info) override {
+    const std::optional<std::string> text = scalar(name, info);
+    if (!text) return;
+    if (*text != "true" && *text != "false") fail(name, "is not one of true, false");
+    field = *text == "true";
+  }
+
+  void value(std::string_view name, int& field, const FieldInfo& info) override {
+    if (const auto text = scalar(name, info))
+      field = number<int>(name, *text, info, "a whole number");
+  }
+
+  void value(std::string_view name, double& field, const FieldInfo& info) override {
+    if (const auto text = scalar(name, info)) field = number<double>(name, *text, info, "a number");
+  }
+
+  void value(std::string_view name, std::string& field, const FieldInfo& info) override {
+    if (const auto text = scalar(name, info)) field = *text;
+  }
+
+  void choice(std::string_view name, int& field, const FieldInfo& info) override {
+    const std::optional<std::string> text = scalar(name, info);
+    if (!text) return;
+    for (std::size_t i = 0; i < info.choices.size(); ++i) {
+      if (info.choices[i] != *text) continue;
+      field = static_cast<int>(i);
+      return;
+    }
+    fail(name, "is not one of " + joined(info.choices));
+  }
+
+  bool enter(std::string_view name, const FieldInfo& /*info*/) override {
+    known_.back().push_back(name);
+    const YAML::Node node = child(name);
+    if (!node.IsDefined() || node.IsNull()) return false;
+    check_is_map(node, path(name));
+    sections_.emplace_back(name);
+    nodes_.push_back(node);
+    known_.emplace_back();
+    return true;
+  }
+
+  void leave() override {
+    check_unknown_keys();
+    sections_.pop_back();
+    nodes_.pop_back();
+    known_.pop_back();
+  }
+
+ private:
+  // const access: operator[] of a mutable node would add the key that is asked for
+  YAML::Node child(std::string_view name) const {
+    const YAML::Node& node = nodes_.back();
+    return node.IsMap() ? node[std::string(name)] : YAML::Node(YAML::NodeType::Undefined);
+  }
+
+  std::optional<std::string> scalar(std::string_view name, const FieldInfo& /*info*/) {
+    known_.back().push_back(name);
+    const YAML::Node node = child(name);
+    if (!node.IsDefined()) return std::nullopt;
+    if (!node.IsScalar()) throw InputError(path(name) + " must be a single value" + place(node));
+    return node.Scalar();
+  }
+
+  template <class T>
+  T number(std::string_view name, const std::string& text, const FieldInfo& info,
+           const char* kind) {
+    T parsed{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+    if (!is_whole || !std::isfinite(static_cast<double>(parsed)))
+      fail(name, fmt::format("is not {}", kind));
+    const auto as_double = static_cast<double>(parsed);
+    const bool is_inside =
+        as_double >= info.min.value_or(as_double) && as_double <= info.max.value_or(as_double);
+    if (!is_inside) fail(name, "is outside " + range_text(info));
+    return parsed;
+  }
+
+  [[noreturn]] void fail(std::string_view name, const std::string& what) const {
+    const YAML::Node node = child(name);
+    throw InputError(fmt::format("{} = {} {}{}", path(name), node.Scalar(), what, place(node)));
+  }
+
+  void check_is_map(const YAML::Node& node, const std::string& what) const {
+    if (node.IsMap() || node.IsNull()) return;
+    throw InputError(what + " must be a section with keys" + place(node));
+  }
+
+  void check_unknown_keys() const {
+    if (!nodes_.back().IsMap()) return;
+    for (const auto& entry : nodes_.back()) {
+      const std::string key = entry.first.Scalar();
+      bool is_known = false;
+      for (const auto& name : known_.back()) is_known = is_known || name == key;
+      if (is_known) continue;
+      throw InputError(fmt::format("unknown key {}{}; expected one of: {}", path(key),
+                                   place(entry.first), joined(known_.back())));
+    }
+  }
+
+  std::string place(const YAML::Node& node) const {
+    if (node.Mark().is_null()) return "  (" + origin_ + ")";
+    return fmt::format("  ({}, line {})", origin_, node.Mark().line + 1);
+  }
+
+  std::string origin_;
+  std::vector<YAML::Node> nodes_;
+  std::vector<std::vector<std::string_view>> known_;
+};
+
+// Writes one line per field; derived classes say how.
+class Lister : public PathVisitor {
+ public:
+  const std::string& text() const { return text_; }
+
+ protected:
+  virtual void line(std::string_view name, const std::string& value, const FieldInfo& info) = 0;
+
+  void value(std::string_view name, bool& field, const FieldInfo& info) override {
+    line(name, field ? "true" : "false", info);
+  }
+  void value(std::string_view name, int& field, const FieldInfo& info) override {
+    line(name, std::to_string(field), info);
+  }
+  void value(std::string_view name, double& field, const FieldInfo& info) override {
+    line(name, number_text(field), info);
+  }
+  void value(std::string_view name, std::string& field, const FieldInfo& info) override {
+    line(name, quoted(field), info);
+  }
+  void choice(std::string_view name, int& field, const FieldInfo& info) override {
+    line(name, std::string(info.choices.at(static_cast<std::size_t>(field))), info);
+  }
+  void leave() override { sections_.pop_back(); }
+
+  std::string text_;
+};
+
+class YamlLister : public Lister {
+ public:
+  explicit YamlLister(bool with_help) : with_help_(with_help) {}
+
+ protected:
+  void line(std::string_view name, const std::string& value, const FieldInfo& info) override {
+    std::string start = fmt::format("{}{}: {}", indent(), name, value);
+    if (with_help_) {
+      const std::string range = range_text(info);
+      start = fmt::format("{:<36}  # {}{}", start, info.help, range.empty() ? "" : "; " + range);
+    }
+    text_ += start + "\n";
+  }
+
+  bool enter(std::string_view name, const FieldInfo& info) override {
+    if (with_help_) text_ += fmt::format("\n{}# {}\n", indent(), info.help);
+    text_ += fmt::format("{}{}:\n", indent(), name);
+    sections_.emplace_back(name);
+    return true;
+  }
+
+ private:
+  std::string indent() const { return std::string(2 * sections_.size(), ' '); }
+
+  bool with_help_;
+};
+
+class TableLister : public Lister {
+ protected:
+  void line(std::string_view name, const std::string& value, const FieldInfo& info) override {
+    if (!is_table_open_) text_ += "\n| key | default | range | meaning |\n|---|---|---|---|\n";
+    is_table_open_ = true;
+    text_ +=
+        fmt::format("| `{}` | `{}` | {} | {} |\n", path(name), value, range_text(info), info.help);
+  }
+
+  bool enter(std::string_view name, const FieldInfo& info) override {
+    text_ += fmt::format("\n## {}\n\n{}.\n", path(name), info.help);
+    sections_.emplace_back(name);
+    is_table_open_ = false;
+    return true;
+  }
+
+ private:
+  bool is_table_open_ = false;
+};
+
+YAML::Node parse(const std::string& yaml, const std::string& origin) {
+  try {
+    return YAML::Load(yaml);
+  } catch (const YAML::ParserException& error) {
+    throw InputError(
+        fmt::format("{}, line {}: not YAML: {}", origin, error.mark.line + 1, error.msg));
+  }
+}
+
+}  // namespace
+
+void read_fields(void* config, FieldWalk walk, const std::string& yaml, const std::string& origin) {
+  Reader reader(parse(yaml, origin), origin);
+  walk(config, reader);
+  reader.finish();
+}
+
+void assign_field(void* config, FieldWalk walk, const std::string& assignment) {
+  const std::string origin = "--set " + assignment;
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError(origin + ": expected section.key=value");
+  }
+  // the innermost key first: a.b=c becomes {a: {b: c}}
+  YAML::Node node(assignment.substr(equals + 1));
+  std::string keys = assignment.substr(0, equals);
+  while (!keys.empty()) {
+    const auto dot = keys.rfind('.');
+    YAML::Node section(YAML::NodeType::Map);
+    section[keys.substr(dot == std::string::npos ? 0 : dot + 1)] = node;
+    node.reset(section);
+    keys = dot == std::string::npos ? "" : keys.substr(0, dot);
+  }
+  Reader reader(node, origin);
+  walk(config, reader);
+  reader.finish();
+}
+
+std::string fields_as_yaml(void* config, FieldWalk walk, bool with_help) {
+  YamlLister lister(with_help);
+  walk(config, lister);
+  return lister.text();
+}
+
+std::string fields_as_table(void* config, FieldWalk walk) {
+  TableLister lister;
+  walk(config, lister);
+  return lister.text();
+}
+
+}  // namespace samewhere::core

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace samewhere::core {
+
+// Bad outside input: a file, a value, an option. The message is one line for a person and names the
+// file or key, the value found and what was expected. Caught once, in main: printed on stderr, exit
+// code 2.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A broken promise of our own code: a bug. Exit code 3.
+class ContractError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+// Throws ContractError("promise broken: ...") if the condition is false.
+void require(bool condition, std::string_view promise);
+
+}  // namespace samewhere::core

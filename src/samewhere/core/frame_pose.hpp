@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string_view>
+
+#include <samewhere/core/ids.hpp>
+#include <samewhere/core/rigid3.hpp>
+
+namespace samewhere::core {
+
+// States of a session. kWeak: the pose was measured, on less evidence than usual. kLost: no pose.
+enum class FrameStatus { kStarting, kTracking, kWeak, kLost, kResumed };
+
+constexpr std::string_view name_of(FrameStatus status) {
+  constexpr std::string_view kNames[] = {"starting", "tracking", "weak", "lost", "resumed"};
+  return kNames[static_cast<int>(status)];
+}
+
+// Where a frame was seen from, relative to a keyframe: its pose in the world is derived when it is
+// asked for, so that a loop that moves the keyframe moves the frame along.
+struct FramePose {
+  FrameId frame;
+  double stamp_s = 0.0;
+  FrameStatus status = FrameStatus::kLost;
+  bool is_measured = false;  // false: nothing in the image supports the pose (lost)
+  KeyframeId reference_keyframe;
+  Rigid3 reference_from_frame;  // body of the reference keyframe from body of the frame
+  Matrix6d information =
+      Matrix6d::Identity();  // of reference_from_frame, order [m; rad], from the drift model
+  int num_inliers = 0;
+};
+
+}  // namespace samewhere::core

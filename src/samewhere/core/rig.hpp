@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include <samewhere/core/rigid3.hpp>
+
+namespace samewhere::core {
+
+// Pinhole camera with the radial-tangential distortion of Brown (OpenCV's order k1 k2 p1 p2 k3).
+// Lengths in pixels; the centre of the upper left pixel is (0, 0). The functions on it are in
+// geometry/camera.hpp.
+struct PinholeRadtan {
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0.0;
+  double fy_px = 0.0;
+  double cx_px = 0.0;
+  double cy_px = 0.0;
+  double k1 = 0.0;
+  double k2 = 0.0;
+  double p1 = 0.0;
+  double p2 = 0.0;
+  double k3 = 0.0;
+};
+
+// One alternative today; a fisheye model joins here.
+using Camera = std::variant<PinholeRadtan>;
+
+// Noise densities of an inertial unit and where it sits.
+struct Imu {
+  Rigid3 body_from_imu;
+  double gyroscope_noise_rad_s_sqrt_hz = 0.0;
+  double accelerometer_noise_m_s2_sqrt_hz = 0.0;
+};
+
+// The sensors of one body. Poses are body poses; camera i hangs on it by body_from_camera[i]. No
+// camera at all means that nobody told us the calibration: recognition works then, poses do not.
+struct Rig {
+  std::vector<Camera> cameras;
+  std::vector<Rigid3> body_from_camera;
+  std::optional<Imu> imu;
+
+  bool is_calibrated() const { return !cameras.empty(); }
+};
+
+}  // namespace samewhere::core

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <samewhere/core/frame.hpp>
+#include <samewhere/core/truth.hpp>
+
+namespace samewhere::core {
+
+struct SourceInfo {
+  std::string name;        // short, for output folders and titles
+  std::string format;      // "TUM RGB-D", "7-Scenes", ...
+  int num_frames = 0;      // how many next() will give
+  bool has_depth = false;  // whether any frame comes with depth
+  bool is_calibrated = false;
+};
+
+// A stream of frames in the order of time. Implementations: input/ (files), twin/ (rendered).
+class Source {
+ public:
+  Source() = default;
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+  virtual ~Source() = default;
+
+  virtual SourceInfo info() const = 0;
+  // The next frame, or nothing at the end. Frame ids count from 0 without gaps. Throws InputError
+  // on a bad frame.
+  virtual std::optional<Frame> next() = 0;
+  // Ground truth that came with the frames. Throws InputError if it is there but broken.
+  virtual Truth truth() const = 0;
+};
+
+}  // namespace samewhere::core

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <samewhere/core/channel.hpp>
+
+namespace samewhere::core {
+
+// A thread that runs one function to its end. An exception in it comes out of join(). The
+// destructor joins and swallows: whoever wants the exception calls join() first. Whoever owns
+// channels that the function waits on closes them first.
+class WorkerThread {
+ public:
+  explicit WorkerThread(std::function<void()> work)
+      : thread_([this, work = std::move(work)] {
+          try {
+            work();
+          } catch (...) {
+            error_ = std::current_exception();
+          }
+        }) {}
+  WorkerThread(const WorkerThread&) = delete;
+  WorkerThread& operator=(const WorkerThread&) = delete;
+  ~WorkerThread() {
+    if (thread_.joinable()) thread_.join();
+  }
+
+  void join() {
+    if (thread_.joinable()) thread_.join();
+    if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+  }
+
+ private:
+  std::exception_ptr error_;
+  std::thread thread_;  // last: it starts when everything above is ready
+};
+
+// Runs a single-threaded stage between two channels: out = stage(in) until `in` is closed, then
+// closes `out`. If the stage throws, both channels are closed, so that its neighbours end too, and
+// join() throws what the stage threw.
+template <class In, class Out>
+class StageThread {
+ public:
+  StageThread(Channel<In>& in, Channel<Out>& out, std::function<Out(In)> stage)
+      : worker_([&in, &out, stage = std::move(stage)] {
+          const ChannelCloser closer{in, out};
+          while (std::optional<In> message = in.receive()) {
+            if (!out.send(stage(std::move(*message)))) return;
+          }
+        }) {}
+
+  void join() { worker_.join(); }
+
+ private:
+  struct ChannelCloser {
+    Channel<In>& in;
+    Channel<Out>& out;
+    ~ChannelCloser() {
+      in.close();
+      out.close();
+    }
+  };
+
+  WorkerThread worker_;
+};
+
+}  // namespace samewhere::core

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <samewhere/core/rigid3.hpp>
+
+namespace samewhere::core {
+
+// Pose of camera 0 at one moment.
+struct StampedPose {
+  double stamp_s = 0.0;
+  Rigid3 world_from_camera;
+};
+
+using Trajectory = std::vector<StampedPose>;  // stamps ascend strictly
+
+// Whether two frames show the same place (docs/evaluation.md, protocol pr-v2).
+enum class PlaceTruth : std::uint8_t { kDifferent = 0, kSame = 1, kNear = 2 };
+
+// Square matrix over the frames of a source: row = query, column = match.
+struct PlaceTruthMatrix {
+  int num_frames = 0;
+  std::vector<PlaceTruth> values;  // row-major, num_frames * num_frames
+
+  PlaceTruth at(int query, int match) const {
+    return values[static_cast<std::size_t>(query) * static_cast<std::size_t>(num_frames) +
+                  static_cast<std::size_t>(match)];
+  }
+};
+
+// What is known to be true about a source; either part may be missing.
+struct Truth {
+  Trajectory trajectory;  // empty: not known
+  std::optional<PlaceTruthMatrix> places;
+};
+
+}  // namespace samewhere::core

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/verdict.hpp>
+
+namespace samewhere::core {
+
+std::string_view name_of(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kSimilarity:
+      return "similarity";
+    case Refusal::kPause:
+      return "pause";
+    case Refusal::kMatches:
+      return "matches";
+    case Refusal::kInliers:
+      return "inliers";
+    case Refusal::kSpread:
+      return "spread";
+    case Refusal::kOdometry:
+      return "odometry";
+  }
+  throw ContractError("promise broken: every Refusal has a name");
+}
+
+CandidateId candidate_of(const Verdict& verdict) {
+  return std::visit([](const auto& v) { return v.candidate; }, verdict);
+}
+
+const Evidence& evidence_of(const Verdict& verdict) {
+  return std::visit([](const auto& v) -> const Evidence& { return v.evidence; }, verdict);
+}
+
+bool is_loop(const Verdict& verdict) { return std::holds_alternative<LoopClosure>(verdict); }
+
+std::string_view name_of(const Verdict& verdict) {
+  if (is_loop(verdict)) return "LOOP";
+  return std::holds_alternative<Rejection>(verdict) ? "NOT" : "AMBIGUOUS";
+}
+
+std::string_view stage_of(const Verdict& verdict) {
+  if (const auto* rejection = std::get_if<Rejection>(&verdict)) return name_of(rejection->stage);
+  return is_loop(verdict) ? "accepted" : "rivals";
+}
+
+std::string reason_of(const Verdict& verdict) {
+  if (const auto* rejection = std::get_if<Rejection>(&verdict)) return rejection->reason;
+  if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return ambiguous->reason;
+  const Evidence& evidence = evidence_of(verdict);
+  if (!evidence.geometry) return fmt::format("similarity {:.3f}", evidence.similarity);
+  return fmt::format("{} of {} matches agree on one geometry, reprojection error {:.2f} px",
+                     evidence.geometry->num_inliers, evidence.geometry->num_matches,
+                     evidence.geometry->reprojection_rmse_px);
+}
+
+}  // namespace samewhere::core

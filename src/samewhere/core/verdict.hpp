@@ -1,0 +1,104 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <samewhere/core/ids.hpp>
+#include <samewhere/core/rigid3.hpp>
+
+namespace samewhere::core {
+
+// Two views that look alike, found by appearance only.
+struct Candidate {
+  CandidateId id;
+  FrameId query;
+  FrameId match;            // older than query
+  double similarity = 0.0;  // of the two descriptors, in [-1, 1]
+};
+
+// What geometry says about a candidate.
+struct GeometryEvidence {
+  int num_matches = 0;  // feature matches offered to RANSAC
+  int num_inliers = 0;  // of these, consistent with one relative pose (or one fundamental matrix)
+  double inlier_ratio = 0.0;          // num_inliers / num_matches
+  double spread_ratio = 0.0;          // share of the query image's 8 x 8 cells that hold an inlier
+  double reprojection_rmse_px = 0.0;  // of the inliers
+  std::optional<Sim3>
+      match_from_query;  // body of the match from body of the query; none without depth
+};
+
+// What the odometry since the match says about the relative pose that geometry found.
+struct OdometryEvidence {
+  double correction_m = 0.0;    // how far the loop moves the query
+  double correction_rad = 0.0;  //
+  double mahalanobis_squared =
+      0.0;  // of the correction under the drift model; chi-square with 6 degrees of freedom
+};
+
+// Everything measured about one candidate. A part that was not measured is absent.
+struct Evidence {
+  double similarity = 0.0;
+  std::optional<GeometryEvidence> geometry;
+  std::optional<OdometryEvidence> odometry;
+};
+
+// Where in the funnel a candidate was refused, in the order of the checks.
+enum class Refusal { kSimilarity, kPause, kMatches, kInliers, kSpread, kOdometry };
+
+inline constexpr Refusal kAllRefusals[] = {Refusal::kSimilarity, Refusal::kPause,
+                                           Refusal::kMatches,    Refusal::kInliers,
+                                           Refusal::kSpread,     Refusal::kOdometry};
+
+std::string_view name_of(Refusal refusal);
+
+// A feature of the query and the feature of the match that shows the same point.
+struct FeaturePair {
+  int query_feature = 0;
+  int match_feature = 0;
+};
+
+// The two views show the same place.
+struct LoopClosure {
+  CandidateId candidate;
+  Evidence evidence;
+  std::optional<Sim3>
+      match_from_query;  // none: counted as a loop, but adds no edge (profile paper without a pose)
+  bool scale_is_free = false;  // monocular: the scale of match_from_query was estimated
+  Matrix6d information = Matrix6d::Identity();  // of match_from_query, order [m; rad]
+  std::vector<FeaturePair> pairs;
+};
+
+// The two views only look alike, or nothing proves that they do not.
+struct Rejection {
+  CandidateId candidate;
+  Evidence evidence;
+  Refusal stage = Refusal::kSimilarity;
+  std::string reason;  // one sentence with the figure and the threshold
+};
+
+// Cannot tell yet: several places explain the view.
+struct Ambiguous {
+  CandidateId candidate;
+  Evidence evidence;
+  std::vector<CandidateId> rivals;
+  int expires_after_keyframes = 0;
+  double expires_after_m = 0.0;
+  std::string reason;
+};
+
+using Verdict = std::variant<LoopClosure, Rejection, Ambiguous>;
+
+CandidateId candidate_of(const Verdict& verdict);
+const Evidence& evidence_of(const Verdict& verdict);
+bool is_loop(const Verdict& verdict);
+// "LOOP", "NOT" or "AMBIGUOUS": the words of loops.json.
+std::string_view name_of(const Verdict& verdict);
+// The check that decided, and why, in one sentence. For a loop: the last check, and what it
+// measured.
+std::string_view stage_of(const Verdict& verdict);
+std::string reason_of(const Verdict& verdict);
+
+}  // namespace samewhere::core
