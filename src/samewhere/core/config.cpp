@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -55,31 +57,30 @@ class Reader : public PathVisitor {
     check_is_map(nodes_.back(), "the configuration");
   }
 
-  void finish() { check_unknown_keys(); }
+  void finish() { check_keys(); }
 
  protected:
-  void value(std::string_view name, bool& field, const FieldInfo& info) override {
-    const std::optional<std::string> text = scalar(name, info);
+  void value(std::string_view name, bool& field, const FieldInfo& /*info*/) override {
+    const std::optional<std::string> text = scalar(name);
     if (!text) return;
     if (*text != "true" && *text != "false") fail(name, "is not one of true, false");
     field = *text == "true";
   }
 
   void value(std::string_view name, int& field, const FieldInfo& info) override {
-    if (const auto text = scalar(name, info))
-      field = number<int>(name, *text, info, "a whole number");
+    if (const auto text = scalar(name)) field = number<int>(name, *text, info, "a whole number");
   }
 
   void value(std::string_view name, double& field, const FieldInfo& info) override {
-    if (const auto text = scalar(name, info)) field = number<double>(name, *text, info, "a number");
+    if (const auto text = scalar(name)) field = number<double>(name, *text, info, "a number");
   }
 
-  void value(std::string_view name, std::string& field, const FieldInfo& info) override {
-    if (const auto text = scalar(name, info)) field = *text;
+  void value(std::string_view name, std::string& field, const FieldInfo& /*info*/) override {
+    if (const auto text = scalar(name)) field = *text;
   }
 
   void choice(std::string_view name, int& field, const FieldInfo& info) override {
-    const std::optional<std::string> text = scalar(name, info);
+    const std::optional<std::string> text = scalar(name);
     if (!text) return;
     for (std::size_t i = 0; i < info.choices.size(); ++i) {
       if (info.choices[i] != *text) continue;
@@ -101,7 +102,7 @@ class Reader : public PathVisitor {
   }
 
   void leave() override {
-    check_unknown_keys();
+    check_keys();
     sections_.pop_back();
     nodes_.pop_back();
     known_.pop_back();
@@ -114,7 +115,7 @@ class Reader : public PathVisitor {
     return node.IsMap() ? node[std::string(name)] : YAML::Node(YAML::NodeType::Undefined);
   }
 
-  std::optional<std::string> scalar(std::string_view name, const FieldInfo& /*info*/) {
+  std::optional<std::string> scalar(std::string_view name) {
     known_.back().push_back(name);
     const YAML::Node node = child(name);
     if (!node.IsDefined()) return std::nullopt;
@@ -126,9 +127,11 @@ class Reader : public PathVisitor {
   T number(std::string_view name, const std::string& text, const FieldInfo& info,
            const char* kind) {
     T parsed{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
-    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
-    if (!is_whole || !std::isfinite(static_cast<double>(parsed)))
+    const char* const text_end = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), text_end, parsed);
+    if (error == std::errc::result_out_of_range && end == text_end)
+      fail(name, fmt::format("does not fit into {}", kind));
+    if (error != std::errc{} || end != text_end || !std::isfinite(static_cast<double>(parsed)))
       fail(name, fmt::format("is not {}", kind));
     const auto as_double = static_cast<double>(parsed);
     const bool is_inside =
@@ -147,15 +150,19 @@ class Reader : public PathVisitor {
     throw InputError(what + " must be a section with keys" + place(node));
   }
 
-  void check_unknown_keys() const {
+  // Every key of the section is known, and there once: the parser keeps both of a pair and finds
+  // the first.
+  void check_keys() const {
     if (!nodes_.back().IsMap()) return;
+    std::set<std::string> seen;
     for (const auto& entry : nodes_.back()) {
       const std::string key = entry.first.Scalar();
-      bool is_known = false;
-      for (const auto& name : known_.back()) is_known = is_known || name == key;
-      if (is_known) continue;
-      throw InputError(fmt::format("unknown key {}{}; expected one of: {}", path(key),
-                                   place(entry.first), joined(known_.back())));
+      const auto& known = known_.back();
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        throw InputError(fmt::format("unknown key {}{}; expected one of: {}", path(key),
+                                     place(entry.first), joined(known)));
+      if (!seen.insert(key).second)
+        throw InputError(path(key) + " is given twice" + place(entry.first));
     }
   }
 
@@ -246,11 +253,26 @@ class TableLister : public Lister {
 
 YAML::Node parse(const std::string& yaml, const std::string& origin) {
   try {
-    return YAML::Load(yaml);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() > 1)
+      throw InputError(origin + ": holds several YAML documents (a line ---), expected one");
+    return documents.empty() ? YAML::Node(YAML::NodeType::Null) : documents.front();
   } catch (const YAML::ParserException& error) {
     throw InputError(
         fmt::format("{}, line {}: not YAML: {}", origin, error.mark.line + 1, error.msg));
   }
+}
+
+// "a.b" and "c" become {a: {b: c}}.
+YAML::Node nested(const std::string& keys, const std::string& value) {
+  YAML::Node section(YAML::NodeType::Map);
+  const auto dot = keys.find('.');
+  if (dot == std::string::npos) {
+    section[keys] = value;
+  } else {
+    section[keys.substr(0, dot)] = nested(keys.substr(dot + 1), value);
+  }
+  return section;
 }
 
 }  // namespace
@@ -264,20 +286,10 @@ void read_fields(void* config, FieldWalk walk, const std::string& yaml, const st
 void assign_field(void* config, FieldWalk walk, const std::string& assignment) {
   const std::string origin = "--set " + assignment;
   const auto equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) {
+  if (equals == std::string::npos || equals == 0 || assignment.front() == '.') {
     throw InputError(origin + ": expected section.key=value");
   }
-  // the innermost key first: a.b=c becomes {a: {b: c}}
-  YAML::Node node(assignment.substr(equals + 1));
-  std::string keys = assignment.substr(0, equals);
-  while (!keys.empty()) {
-    const auto dot = keys.rfind('.');
-    YAML::Node section(YAML::NodeType::Map);
-    section[keys.substr(dot == std::string::npos ? 0 : dot + 1)] = node;
-    node.reset(section);
-    keys = dot == std::string::npos ? "" : keys.substr(0, dot);
-  }
-  Reader reader(node, origin);
+  Reader reader(nested(assignment.substr(0, equals), assignment.substr(equals + 1)), origin);
   walk(config, reader);
   reader.finish();
 }

@@ -1,9 +1,9 @@
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <optional>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
@@ -27,16 +27,38 @@ int write_all(int file, std::string_view content) {
   return ::fsync(file) == 0 ? 0 : errno;
 }
 
+// Reads up to the end of the file, whatever size the system tells before, or returns nothing and
+// leaves the reason in errno.
+std::optional<std::string> read_all(int file) {
+  constexpr std::size_t kStep = 1 << 16;
+  struct stat status {};
+  if (::fstat(file, &status) != 0) return std::nullopt;
+  std::string content(static_cast<std::size_t>(status.st_size) + kStep, '\0');
+  std::size_t filled = 0;
+  while (true) {
+    const ssize_t got = ::read(file, content.data() + filled, content.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return std::nullopt;
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+    if (filled == content.size()) content.resize(2 * filled);
+  }
+  content.resize(filled);
+  return content;
+}
+
 }  // namespace
 
 std::string read_file(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path))
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) fail(path, "cannot be read", errno);
+  std::optional<std::string> content = read_all(file);
+  const int error = errno;
+  ::close(file);
+  if (!content && error == EISDIR)
     throw InputError(path.string() + ": is a folder, expected a file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail(path, "cannot be read", errno);
-  std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) fail(path, "cannot be read", errno);
-  return content;
+  if (!content) fail(path, "cannot be read", error);
+  return std::move(*content);
 }
 
 void write_file(const std::filesystem::path& path, std::string_view content) {

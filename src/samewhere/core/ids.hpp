@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <ostream>
 
+#include <samewhere/core/errors.hpp>
+
 namespace samewhere::core {
 
 // A 64-bit id that cannot be mixed up with the id of another kind of thing. The session sits in the
@@ -13,10 +15,14 @@ template <class Tag>
 class Id {
  public:
   static constexpr int kIndexBits = 48;
+  static constexpr std::uint64_t kMaxIndex = (std::uint64_t{1} << kIndexBits) - 2;
 
   constexpr Id() = default;
+  // A larger index (a negative number that was cast) would spill into the session: ContractError.
   constexpr explicit Id(std::uint64_t index, std::uint16_t session = 0)
-      : value_((std::uint64_t{session} << kIndexBits) | index) {}
+      : value_((std::uint64_t{session} << kIndexBits) | index) {
+    if (index > kMaxIndex) require(false, "the index of an Id fits into 48 bits");
+  }
 
   static constexpr Id from_value(std::uint64_t value) {
     Id id;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -12,6 +13,10 @@ constexpr double kQuiet_s = 0.5;
 constexpr double kRedraw_s = 0.1;
 constexpr int kBarWidth = 24;
 
+// Not fmt::print: it throws where stderr cannot be written, and a progress line is not worth the
+// run.
+void print_to_stderr(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 }  // namespace
 
 Progress::Progress(std::string what, int total)
@@ -23,6 +28,7 @@ Progress::Progress(std::string what, int total)
 Progress::~Progress() { finish(); }
 
 void Progress::update(int done) {
+  done = std::clamp(done, 0, std::max(total_, 0));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const double elapsed_s = elapsed.count();
   if (total_ <= 0 || elapsed_s < kQuiet_s) return;
@@ -42,16 +48,17 @@ void Progress::draw(int done, double elapsed_s) {
       fmt::format("{} {}/{}  {:.1f} per s  {:.0f} s left", what_, done, total_, per_second, left_s);
   if (is_terminal_) {
     const int filled = kBarWidth * done / total_;
-    fmt::print(stderr, "\r\x1b[2K[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, figures);
+    print_to_stderr(
+        fmt::format("\r\x1b[2K[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, figures));
     std::fflush(stderr);
   } else {
-    fmt::print(stderr, "{}\n", figures);
+    print_to_stderr(figures + "\n");
   }
   has_drawn_ = true;
 }
 
 void Progress::finish() {
-  if (has_drawn_ && is_terminal_) fmt::print(stderr, "\n");
+  if (has_drawn_ && is_terminal_) print_to_stderr("\n");
   has_drawn_ = false;
 }
 

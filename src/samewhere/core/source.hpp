@@ -14,6 +14,7 @@ struct SourceInfo {
   int num_frames = 0;      // how many next() will give
   bool has_depth = false;  // whether any frame comes with depth
   bool is_calibrated = false;
+  double frame_rate_hz = 0.0;  // 1 / median time between frames; 0 for a single frame
 };
 
 // A stream of frames in the order of time. Implementations: input/ (files), twin/ (rendered).

@@ -41,17 +41,25 @@ class WorkerThread {
 
 // Runs a single-threaded stage between two channels: out = stage(in) until `in` is closed, then
 // closes `out`. If the stage throws, both channels are closed, so that its neighbours end too, and
-// join() throws what the stage threw.
+// join() throws what the stage threw. The destructor closes both channels as well: an exception
+// that unwinds the owner must not wait for messages that nobody sends any more.
 template <class In, class Out>
 class StageThread {
  public:
   StageThread(Channel<In>& in, Channel<Out>& out, std::function<Out(In)> stage)
-      : worker_([&in, &out, stage = std::move(stage)] {
+      : in_(in), out_(out), worker_([&in, &out, stage = std::move(stage)] {
           const ChannelCloser closer{in, out};
           while (std::optional<In> message = in.receive()) {
             if (!out.send(stage(std::move(*message)))) return;
           }
         }) {}
+
+  StageThread(const StageThread&) = delete;
+  StageThread& operator=(const StageThread&) = delete;
+  ~StageThread() {
+    in_.close();
+    out_.close();
+  }
 
   void join() { worker_.join(); }
 
@@ -65,6 +73,8 @@ class StageThread {
     }
   };
 
+  Channel<In>& in_;
+  Channel<Out>& out_;
   WorkerThread worker_;
 };
 

@@ -1,0 +1,153 @@
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/core/channel.hpp>
+#include <samewhere/core/stage_thread.hpp>
+
+namespace samewhere::core {
+namespace {
+
+TEST(Channel, MessagesArriveInTheOrderInWhichTheyWereSent) {
+  constexpr int kNumMessages = 10'000;
+  Channel<int> channel(3);
+  WorkerThread writer([&] {
+    for (int i = 0; i < kNumMessages; ++i) channel.send(i);
+    channel.close();
+  });
+  for (int i = 0; i < kNumMessages; ++i) ASSERT_EQ(channel.receive(), i);
+  EXPECT_EQ(channel.receive(), std::nullopt);
+  writer.join();
+}
+
+TEST(Channel, WhatIsLeftArrivesAfterItIsClosedAndThenNothing) {
+  Channel<int> channel(2);
+  EXPECT_TRUE(channel.send(1));
+  EXPECT_TRUE(channel.send(2));
+  channel.close();
+  EXPECT_FALSE(channel.send(3)) << "nobody listens to a closed channel";
+  EXPECT_EQ(channel.receive(), 1);
+  EXPECT_EQ(channel.receive(), 2);
+  EXPECT_EQ(channel.receive(), std::nullopt);
+  EXPECT_EQ(channel.receive(), std::nullopt);
+}
+
+TEST(Channel, AWriterNeverRunsAheadOfItsReaderByMoreThanTheCapacity) {
+  constexpr int kCapacity = 4;
+  Channel<int> channel(kCapacity);
+  Channel<int> progress(1000);  // how far the writer has come, in its own order
+  WorkerThread writer([&] {
+    for (int i = 0; i < 100 && channel.send(i); ++i) progress.send(i);
+    progress.close();
+  });
+  int num_received = 0;
+  int num_sent = 0;
+  while (num_sent < 100) {
+    num_sent = *progress.receive() + 1;
+    ASSERT_LE(num_sent, num_received + kCapacity);
+    if (num_sent == num_received + kCapacity || num_sent == 100) {
+      ASSERT_EQ(channel.receive(), num_received);
+      ++num_received;
+    }
+  }
+  writer.join();
+}
+
+TEST(Channel, ClosingWakesAWriterThatWaits) {
+  Channel<int> channel(1);
+  bool was_sent = true;
+  channel.send(1);
+  WorkerThread writer([&] { was_sent = channel.send(2); });
+  channel.close();
+  writer.join();
+  EXPECT_FALSE(was_sent);
+}
+
+TEST(Channel, ClosingWakesAReaderThatWaits) {
+  Channel<int> channel(1);
+  std::optional<int> received = 7;
+  WorkerThread reader([&] { received = channel.receive(); });
+  channel.close();
+  reader.join();
+  EXPECT_EQ(received, std::nullopt);
+}
+
+TEST(Channel, MessagesAreMovedNotCopied) {
+  Channel<std::unique_ptr<int>> channel(1);
+  channel.send(std::make_unique<int>(5));
+  EXPECT_EQ(**channel.receive(), 5);
+}
+
+TEST(Channel, ACapacityOfNothingIsAMistake) { EXPECT_THROW(Channel<int>(0), ContractError); }
+
+TEST(WorkerThread, AnExceptionComesOutOfJoinOnce) {
+  WorkerThread worker([] { throw InputError("no such frame"); });
+  EXPECT_THROW(worker.join(), InputError);
+  EXPECT_NO_THROW(worker.join());
+}
+
+TEST(WorkerThread, DestructionWithoutJoinSwallowsTheException) {
+  EXPECT_NO_THROW(WorkerThread([] { throw InputError("nobody asks"); }));
+}
+
+TEST(StageThread, AChainOfStagesAnswersEveryMessageInOrderAndEndsWhenTheFirstChannelIsClosed) {
+  Channel<int> numbers(2);
+  Channel<int> squares(2);
+  Channel<std::string> words(2);
+  StageThread<int, int> square(numbers, squares, [](int x) { return x * x; });
+  StageThread<int, std::string> print(squares, words, [](int x) { return std::to_string(x); });
+  WorkerThread writer([&] {
+    for (int i = 0; i < 50; ++i) numbers.send(i);
+    numbers.close();
+  });
+  int num_words = 0;
+  while (const auto word = words.receive()) {
+    EXPECT_EQ(*word, std::to_string(num_words * num_words));
+    ++num_words;
+  }
+  EXPECT_EQ(num_words, 50);
+  writer.join();
+  square.join();
+  print.join();
+}
+
+TEST(StageThread, AnExceptionEndsTheNeighboursAndComesOutOfJoin) {
+  Channel<int> in(1);
+  Channel<int> out(1);
+  StageThread<int, int> stage(in, out, [](int x) {
+    if (x == 3) throw InputError("frame 3 is cut short");
+    return x;
+  });
+  WorkerThread writer([&] {
+    for (int i = 0; in.send(i);) ++i;  // ends only because the failing stage closes `in`
+  });
+  std::vector<int> received;
+  while (const auto x = out.receive()) received.push_back(*x);
+  EXPECT_EQ(received, (std::vector<int>{0, 1, 2}));
+  writer.join();
+  EXPECT_THROW(stage.join(), InputError);
+}
+
+TEST(StageThread, DestructionDoesNotWaitForAMessageThatNobodySends) {
+  Channel<int> in(1);
+  Channel<int> out(1);
+  {
+    const StageThread<int, int> stage(in, out, [](int x) { return x; });
+  }
+  EXPECT_FALSE(in.send(1));
+}
+
+TEST(StageThread, DestructionDoesNotWaitForAReaderThatHasLeft) {
+  Channel<int> in(10);
+  Channel<int> out(1);
+  for (int i = 0; i < 10; ++i) in.send(i);
+  {
+    const StageThread<int, int> stage(in, out, [](int x) { return x; });
+  }
+  EXPECT_FALSE(in.send(1));
+}
+
+}  // namespace
+}  // namespace samewhere::core

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include <samewhere/core/timing.hpp>
+
+namespace samewhere::core {
+namespace {
+
+TEST(Timing, NothingMeasuredIsAllZero) {
+  const TimingSummary summary = summarize({});
+  EXPECT_EQ(summary.count, 0);
+  EXPECT_EQ(summary.p99_ms, 0.0);
+}
+
+TEST(Timing, QuantilesAreMeasuredValuesOfTheirRank) {
+  std::vector<double> durations_ms;
+  for (int i = 100; i >= 1; --i) durations_ms.push_back(i);  // in any order
+  const TimingSummary summary = summarize(durations_ms);
+  EXPECT_EQ(summary.count, 100);
+  EXPECT_EQ(summary.median_ms, 50.0);
+  EXPECT_EQ(summary.p95_ms, 95.0);
+  EXPECT_EQ(summary.p99_ms, 99.0);
+  EXPECT_EQ(summary.total_ms, 5050.0);
+}
+
+TEST(Timing, OneValueIsAllItsQuantiles) {
+  const TimingSummary summary = summarize({7.5});
+  EXPECT_EQ(summary.median_ms, 7.5);
+  EXPECT_EQ(summary.p95_ms, 7.5);
+  EXPECT_EQ(summary.p99_ms, 7.5);
+}
+
+TEST(Timing, AScopedTimerAddsOneDurationToItsStage) {
+  Timings timings;
+  { const ScopedTimer timer(timings, "track"); }
+  { const ScopedTimer timer(timings, "track"); }
+  ASSERT_EQ(timings.durations_ms().count("track"), 1U);
+  EXPECT_EQ(timings.durations_ms().at("track").size(), 2U);
+  EXPECT_GE(timings.durations_ms().at("track").front(), 0.0);
+}
+
+TEST(Timing, PeakMemoryGrowsWithAnAllocationThatIsTouched) {
+  const double before_mib = peak_memory_mib();
+  const std::vector<char> block(64 << 20, 'x');
+  EXPECT_EQ(block.back(), 'x');
+  EXPECT_GE(peak_memory_mib(), before_mib + 32.0);
+}
+
+}  // namespace
+}  // namespace samewhere::core

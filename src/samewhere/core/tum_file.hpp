@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <samewhere/core/truth.hpp>
+
+namespace samewhere::core {
+
+// A trajectory in the format of the TUM RGB-D benchmark: lines `stamp tx ty tz qx qy qz qw`
+// (seconds, metres, rotation as a quaternion that is normalised here), blank lines and '#'
+// comments. Throws InputError naming file and line if a line is short, a value is no finite number,
+// a quaternion is zero, or stamps do not rise.
+Trajectory read_tum(const std::filesystem::path& path);
+
+// The same format, fixed: six decimals for the stamp, nine for the pose.
+std::string tum_text(const Trajectory& trajectory);
+
+}  // namespace samewhere::core

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <samewhere/core/config.hpp>
+
+namespace samewhere::features {
+
+struct Config {
+  int num_features = 1000;
+  int num_levels = 8;
+  double scale_factor = 1.2;
+  int min_corner_contrast = 7;
+  int cell_px = 40;
+  double virtual_baseline_m = 0.075;
+  int max_distance_bits = 64;
+  double max_ratio = 0.8;
+};
+
+inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("num_features", config.num_features,
+        {.help = "ORB features kept per picture", .min = 50, .max = 20000});
+  visit("num_levels", config.num_levels,
+        {.help = "levels of the picture pyramid", .min = 1, .max = 12});
+  visit("scale_factor", config.scale_factor,
+        {.help = "size ratio of neighbouring levels", .min = 1.05, .max = 2.0});
+  visit("min_corner_contrast", config.min_corner_contrast,
+        {.help = "FAST threshold, grey levels; low keeps corners on plain walls",
+         .min = 1,
+         .max = 100});
+  visit("cell_px", config.cell_px,
+        {.help = "grid cell that shares the features out evenly, pixels", .min = 8, .max = 400});
+  visit("virtual_baseline_m", config.virtual_baseline_m,
+        {.help = "baseline of the stereo pair that a depth camera is treated as, metres",
+         .min = 0.001,
+         .max = 1.0});
+  visit("max_distance_bits", config.max_distance_bits,
+        {.help = "descriptors further apart never match, bits of 256", .min = 1, .max = 256});
+  visit("max_ratio", config.max_ratio,
+        {.help = "best distance over second best, above which a match is ambiguous",
+         .min = 0.1,
+         .max = 1.0});
+}
+
+}  // namespace samewhere::features

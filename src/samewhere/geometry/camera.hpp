@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include <samewhere/core/rig.hpp>
+
+namespace samewhere::geometry {
+
+// Where a point in the camera's frame (metres; z forward, x right, y down) appears in the picture,
+// eq. (14)-(17) with distortion. Nothing if it is not in front of the camera. The pixel may lie
+// outside the picture.
+std::optional<Eigen::Vector2d> project(const core::Camera& camera,
+                                       const Eigen::Vector3d& point_in_camera);
+
+// The same without distortion: where an ideal pinhole of the same intrinsics would see it.
+std::optional<Eigen::Vector2d> project_undistorted(const core::Camera& camera,
+                                                   const Eigen::Vector3d& point_in_camera);
+
+// The pixel that an ideal pinhole of the same intrinsics would see instead of this one.
+Eigen::Vector2d undistort(const core::Camera& camera, const Eigen::Vector2d& pixel);
+
+// Unit vector in the camera's frame towards what is seen at a pixel of the picture as it was taken.
+Eigen::Vector3d bearing(const core::Camera& camera, const Eigen::Vector2d& pixel);
+// The same for a pixel that undistort() gave.
+Eigen::Vector3d bearing_of_undistorted(const core::Camera& camera,
+                                       const Eigen::Vector2d& undistorted);
+
+// The intrinsics that the ideal pinhole shares with the camera.
+const core::PinholeRadtan& pinhole(const core::Camera& camera);
+
+// Mean focal length: converts small angles to pixels.
+double focal_px(const core::Camera& camera);
+
+}  // namespace samewhere::geometry

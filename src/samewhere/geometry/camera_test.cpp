@@ -1,0 +1,53 @@
+#include <gtest/gtest.h>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/geometry/camera.hpp>
+
+namespace samewhere::geometry {
+namespace {
+
+// The published calibration of the first Freiburg camera: strong distortion.
+core::PinholeRadtan strong_camera() {
+  return {640, 480, 517.3, 516.5, 318.6, 255.3, 0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
+}
+
+TEST(Camera, UndistortingUndoesProjectionAllOverThePicture) {
+  const core::Camera camera = strong_camera();
+  for (int x = 0; x < 640; x += 16) {
+    for (int y = 0; y < 480; y += 16) {
+      const Eigen::Vector2d pixel(x, y);
+      const auto again = project(camera, 3.7 * bearing(camera, pixel));
+      ASSERT_TRUE(again);
+      EXPECT_LT((*again - pixel).norm(), 1e-6) << pixel.transpose();
+    }
+  }
+}
+
+TEST(Camera, WithoutDistortionItIsThePinholeOfEquation17) {
+  const core::Camera camera = core::PinholeRadtan{640, 480, 500.0, 510.0, 320.0, 240.0};
+  const auto pixel = project(camera, {0.5, -0.25, 2.0});
+  ASSERT_TRUE(pixel);
+  EXPECT_DOUBLE_EQ(pixel->x(), 500.0 * 0.25 + 320.0);
+  EXPECT_DOUBLE_EQ(pixel->y(), 510.0 * -0.125 + 240.0);
+  EXPECT_EQ(undistort(camera, *pixel), *pixel);
+}
+
+TEST(Camera, WhatIsBehindIsNotSeen) {
+  EXPECT_FALSE(project(strong_camera(), {0.0, 0.0, -1.0}));
+  EXPECT_FALSE(project(strong_camera(), {1.0, 0.0, 0.0}));
+  EXPECT_FALSE(project_undistorted(strong_camera(), {0.0, 0.0, -1.0}));
+}
+
+TEST(Camera, BearingsAreUnitVectorsOfTheIdealPixel) {
+  const core::Camera camera = strong_camera();
+  core::Random random(7);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector2d pixel(random.uniform(0, 639), random.uniform(0, 479));
+    const Eigen::Vector3d direction = bearing(camera, pixel);
+    EXPECT_NEAR(direction.norm(), 1.0, 1e-12);
+    EXPECT_LT((*project_undistorted(camera, direction) - undistort(camera, pixel)).norm(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace samewhere::geometry

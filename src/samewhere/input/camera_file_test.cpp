@@ -1,0 +1,61 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class CameraFile : public testing::Test {
+ protected:
+  std::string complaint_about(const std::string& text) {
+    folder_.write("camera.txt", text);
+    return complaint([&] { read_camera_file(folder_.at("camera.txt")); });
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(CameraFile, TheMatrixAloneMeansNoDistortion) {
+  folder_.write("camera.txt", "# K\n4.9e+02 0.0e+00 320\n\n0 510 240.5\n0 0 1\n");
+  const core::PinholeRadtan camera = read_camera_file(folder_.at("camera.txt"));
+  EXPECT_EQ(camera.fx_px, 490.0);
+  EXPECT_EQ(camera.fy_px, 510.0);
+  EXPECT_EQ(camera.cx_px, 320.0);
+  EXPECT_EQ(camera.cy_px, 240.5);
+  EXPECT_EQ(camera.k1, 0.0);
+  EXPECT_EQ(camera.k3, 0.0);
+  EXPECT_EQ(camera.width_px, 0);
+}
+
+TEST_F(CameraFile, TheDistortionFollowsInTheOrderK1K2P1P2K3) {
+  folder_.write("camera.txt", "500 0 320\n0 500 240\n0 0 1\n0.1 -0.2 0.003 -0.004 0.5\n");
+  const core::PinholeRadtan camera = read_camera_file(folder_.at("camera.txt"));
+  EXPECT_EQ(camera.k1, 0.1);
+  EXPECT_EQ(camera.k2, -0.2);
+  EXPECT_EQ(camera.p1, 0.003);
+  EXPECT_EQ(camera.p2, -0.004);
+  EXPECT_EQ(camera.k3, 0.5);
+}
+
+TEST_F(CameraFile, WhatIsNoCameraMatrixIsNamedWithItsLine) {
+  EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n"), HasSubstr("found 2 rows"));
+  EXPECT_THAT(complaint_about(""), HasSubstr("found 0 rows"));
+  EXPECT_THAT(complaint_about("500 0 320\n0 500\n0 0 1\n"),
+              AllOf(HasSubstr("camera.txt, line 2"), HasSubstr("found 2 values")));
+  EXPECT_THAT(complaint_about("500 0 nan\n0 500 240\n0 0 1\n"),
+              AllOf(HasSubstr("line 1"), HasSubstr("'nan'")));
+  EXPECT_THAT(complaint_about("-500 0 320\n0 500 240\n0 0 1\n"), HasSubstr("fx > 0"));
+  EXPECT_THAT(complaint_about("500 2 320\n0 500 240\n0 0 1\n"), HasSubstr("found 500 2 320"));
+  EXPECT_THAT(complaint_about("500 0 320\n0 0 240\n0 0 1\n"), HasSubstr("fy > 0"));
+  EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n0 0 2\n"), HasSubstr("expected 0 0 1"));
+  EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n0 0 1\n0.1 0.2 0 0\n"),
+              AllOf(HasSubstr("line 4"), HasSubstr("k1 k2 p1 p2 k3")));
+}
+
+}  // namespace
+}  // namespace samewhere::input

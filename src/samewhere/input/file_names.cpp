@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <charconv>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/input/file_names.hpp>
+
+namespace samewhere::input {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Length of the run of digits, or else of other characters, that the text begins with.
+std::size_t leading_run(std::string_view text) {
+  const bool wants_digits = is_digit(text.front());
+  std::size_t length = 0;
+  while (length < text.size() && is_digit(text[length]) == wants_digits) ++length;
+  return length;
+}
+
+// Negative, zero or positive; numbers of any length.
+int compare_runs(std::string_view a, std::string_view b) {
+  if (!is_digit(a.front()) || !is_digit(b.front())) return a.compare(b);
+  a.remove_prefix(std::min(a.find_first_not_of('0'), a.size()));
+  b.remove_prefix(std::min(b.find_first_not_of('0'), b.size()));
+  if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;
+  return a.compare(b);
+}
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+  std::string_view rest_a = a;
+  std::string_view rest_b = b;
+  while (!rest_a.empty() && !rest_b.empty()) {
+    const std::size_t length_a = leading_run(rest_a);
+    const std::size_t length_b = leading_run(rest_b);
+    const int order = compare_runs(rest_a.substr(0, length_a), rest_b.substr(0, length_b));
+    if (order != 0) return order < 0;
+    rest_a.remove_prefix(length_a);
+    rest_b.remove_prefix(length_b);
+  }
+  if (rest_a.empty() && rest_b.empty()) return a < b;  // 1.jpg and 01.jpg
+  return rest_a.empty();
+}
+
+std::optional<int> frame_number(std::string_view name) {
+  constexpr std::size_t kMaxDigits = 9;
+  name = name.substr(0, name.rfind('.'));
+  while (!name.empty() && !is_digit(name.back())) name.remove_suffix(1);
+  std::size_t num_digits = 0;
+  while (num_digits < name.size() && is_digit(name[name.size() - 1 - num_digits])) ++num_digits;
+  if (num_digits == 0 || num_digits > kMaxDigits) return std::nullopt;
+  int number = 0;
+  std::from_chars(name.data() + name.size() - num_digits, name.data() + name.size(), number);
+  return number;
+}
+
+bool is_image_name(std::string_view name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension == ".jpg" || extension == ".jpeg" || extension == ".png";
+}
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error);
+}
+
+std::vector<std::string> sorted_names(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  if (error) throw core::InputError(folder.string() + ": cannot be read: " + error.message());
+  std::sort(names.begin(), names.end(), &natural_less);
+  return names;
+}
+
+}  // namespace samewhere::input

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace samewhere::input {
+
+// The order of a person: runs of digits count as numbers, so 2.jpg comes before 10.jpg.
+bool natural_less(std::string_view a, std::string_view b);
+
+// The last number in the name before its extension, if it has at most nine digits: 12 for
+// frame-000012.color.jpg and 00012.png. (A longer one is a stamp or a serial, not a count.)
+std::optional<int> frame_number(std::string_view name);
+
+// Whether the name ends in .jpg, .jpeg or .png, in small or capital letters.
+bool is_image_name(std::string_view name);
+
+// Whether there is a file or folder (a folder) at that path. No where we may not look.
+bool is_there(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
+
+// Names of the entries of a folder, in natural order. Throws InputError if it cannot be read.
+std::vector<std::string> sorted_names(const std::filesystem::path& folder);
+
+}  // namespace samewhere::input

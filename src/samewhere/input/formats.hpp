@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <samewhere/input/config.hpp>
+#include <samewhere/input/recording.hpp>
+
+namespace samewhere::input {
+
+// Each find_ answers: does this folder hold a recording of that format, and if so, what is in it?
+// Nothing if it does not. All text files are read and checked here, images are not. Throws
+// InputError naming the file (and line) that is missing or broken.
+
+// rgb.txt and depth.txt (lines `stamp filename`), groundtruth.txt, camera.txt. A colour image
+// without a depth image near in time has no depth.
+std::optional<Recording> find_tum_rgbd(const std::filesystem::path& folder, const Config& config);
+
+// frame-000000.color.png (or .jpg), .depth.png, .pose.txt (world from camera, 4 x 4), camera.txt.
+std::optional<Recording> find_seven_scenes(const std::filesystem::path& folder,
+                                           const Config& config);
+
+// images/, depth/ (same file names), K.txt, poses.txt (one world from camera a line, row by row).
+// This is how the HoloLens samples of DeepVideoMVS (Duzceker et al. 2021) are laid out.
+std::optional<Recording> find_hololens(const std::filesystem::path& folder, const Config& config);
+
+// *.jpg, *.jpeg, *.png in natural order, camera.txt. Stamps count by the last number of the names
+// if that rises from each to the next, else by position.
+std::optional<Recording> find_images(const std::filesystem::path& folder, const Config& config);
+
+// A text file with the path of one image a line, relative to the list; further columns are ignored.
+// A list carries neither camera nor truth.
+Recording read_image_list(const std::filesystem::path& list, const Config& config);
+
+}  // namespace samewhere::input

@@ -1,0 +1,217 @@
+#include <bit>
+#include <csetjmp>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/input/image_file.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using core::InputError;
+using std::filesystem::path;
+
+bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
+bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+
+// A damaged header can claim any size; without a limit it would end in the allocator.
+void check_size(const path& file, std::int64_t width_px, std::int64_t height_px) {
+  constexpr std::int64_t kMaxPixels = 100'000'000;
+  if (width_px < 1 || height_px < 1) {
+    throw InputError(file.string() + ": damaged image file: it ends before the picture");
+  }
+  if (width_px <= kMaxPixels / height_px) return;
+  throw InputError(fmt::format("{}: is {} x {} pixels, expected at most {}", file.string(),
+                               width_px, height_px, kMaxPixels));
+}
+
+// ---- JPEG
+
+[[noreturn]] void fail_jpeg(const path& file, tjhandle decoder) {
+  throw InputError(
+      fmt::format("{}: damaged JPEG file: {}", file.string(), tjGetErrorStr2(decoder)));
+}
+
+// Bytes that stand between two markers are skipped without loss (some web cameras write them);
+// every other warning means that pixels were made up.
+bool is_harmless(tjhandle decoder) {
+  return tjGetErrorCode(decoder) == TJERR_WARNING &&
+         std::string_view(tjGetErrorStr2(decoder)).find("extraneous bytes before marker") !=
+             std::string_view::npos;
+}
+
+cv::Mat decode_jpeg(const path& file, std::string_view bytes) {
+  const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), &tjDestroy);
+  core::require(decoder != nullptr, "libjpeg-turbo gives a decoder");
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  int width_px = 0;  // stays 0 if the file ends before the picture: to the library no error
+  int height_px = 0;
+  int subsampling = 0;
+  int colour_space = 0;
+  if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width_px, &height_px, &subsampling,
+                          &colour_space) != 0 &&
+      !is_harmless(decoder.get())) {
+    fail_jpeg(file, decoder.get());
+  }
+  check_size(file, width_px, height_px);
+  const bool is_grey = colour_space == TJCS_GRAY;
+  cv::Mat image(height_px, width_px, is_grey ? CV_8UC1 : CV_8UC3);
+  if (tjDecompress2(decoder.get(), data, bytes.size(), image.data, width_px,
+                    static_cast<int>(image.step), height_px, is_grey ? TJPF_GRAY : TJPF_BGR,
+                    TJFLAG_ACCURATEDCT) != 0 &&
+      !is_harmless(decoder.get())) {
+    fail_jpeg(file, decoder.get());
+  }
+  return image;
+}
+
+// ---- PNG
+
+// One pass through a PNG file. libpng reports errors by longjmp; no frame that it leaves may own
+// anything, so every call of the library goes through guarded(), in a lambda that only borrows.
+class PngReader {
+ public:
+  PngReader(const path& file, std::string_view bytes)
+      : file_(file),
+        rest_(bytes),
+        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, &PngReader::fail,
+                                    &PngReader::ignore_warning)) {
+    core::require(png_ != nullptr, "libpng gives a decoder");
+    info_ = png_create_info_struct(png_);
+    png_set_read_fn(png_, this, &PngReader::read);
+  }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  void read_header() {
+    guarded([this] { png_read_info(png_, info_); });
+    check_size(file_, png_get_image_width(png_, info_), png_get_image_height(png_, info_));
+  }
+
+  bool is_grey() const {
+    return (png_get_color_type(png_, info_) & (PNG_COLOR_MASK_COLOR | PNG_COLOR_MASK_PALETTE)) == 0;
+  }
+  bool has_alpha() const { return (png_get_color_type(png_, info_) & PNG_COLOR_MASK_ALPHA) != 0; }
+  int bits_per_channel() const { return png_get_bit_depth(png_, info_); }
+
+  cv::Mat read_bgr_or_grey() {
+    guarded([this] {
+      png_set_palette_to_rgb(png_);
+      png_set_expand_gray_1_2_4_to_8(png_);
+      png_set_strip_alpha(png_);
+      png_set_bgr(png_);
+    });
+    return read_rows(is_grey() ? CV_8UC1 : CV_8UC3);
+  }
+
+  cv::Mat read_16_bit_grey() {
+    if constexpr (std::endian::native == std::endian::little) {
+      guarded([this] { png_set_swap(png_); });
+    }
+    return read_rows(CV_16UC1);
+  }
+
+ private:
+  cv::Mat read_rows(int type) {
+    guarded([this] {
+      png_set_interlace_handling(png_);
+      png_read_update_info(png_, info_);
+    });
+    cv::Mat image(static_cast<int>(png_get_image_height(png_, info_)),
+                  static_cast<int>(png_get_image_width(png_, info_)), type);
+    core::require(png_get_rowbytes(png_, info_) == image.step, "a PNG row fills an image row");
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < image.rows; ++y) rows.push_back(image.ptr(y));
+    guarded([this, &rows] {
+      png_read_image(png_, rows.data());
+      png_read_end(png_, nullptr);
+    });
+    return image;
+  }
+
+  template <class Step>
+  void guarded(const Step& step) {
+    if (setjmp(png_jmpbuf(png_)) != 0) {
+      throw InputError(fmt::format("{}: damaged PNG file: {}", file_.string(), message_));
+    }
+    step();
+  }
+
+  [[noreturn]] static void fail(png_structp png, png_const_charp message) {
+    static_cast<PngReader*>(png_get_error_ptr(png))->message_ = message;
+    png_longjmp(png, 1);
+  }
+
+  static void ignore_warning(png_structp /*png*/, png_const_charp /*message*/) {}
+
+  static void read(png_structp png, png_bytep out, std::size_t num_bytes) {
+    auto* self = static_cast<PngReader*>(png_get_io_ptr(png));
+    if (self->rest_.size() < num_bytes) png_error(png, "it ends early");
+    std::memcpy(out, self->rest_.data(), num_bytes);
+    self->rest_.remove_prefix(num_bytes);
+  }
+
+  const path& file_;
+  std::string_view rest_;
+  std::string message_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+};
+
+cv::Mat decode_png(const path& file, std::string_view bytes) {
+  PngReader reader(file, bytes);
+  reader.read_header();
+  if (reader.bits_per_channel() > 8) {
+    throw InputError(fmt::format("{}: has {} bits per channel, expected an image with 8",
+                                 file.string(), reader.bits_per_channel()));
+  }
+  return reader.read_bgr_or_grey();
+}
+
+}  // namespace
+
+cv::Mat read_image(const path& path) {
+  const std::string bytes = core::read_file(path);
+  if (is_jpeg(bytes)) return decode_jpeg(path, bytes);
+  if (is_png(bytes)) return decode_png(path, bytes);
+  throw InputError(path.string() + (bytes.empty() ? ": is empty" : ": is neither") +
+                   (bytes.empty() ? ", expected an image, JPEG or PNG"
+                                  : " JPEG nor PNG, the image formats that are read"));
+}
+
+cv::Mat read_depth(const path& path, double units_per_m) {
+  core::require(units_per_m > 0.0, "depth units per metre are positive");
+  const std::string bytes = core::read_file(path);
+  if (!is_png(bytes)) throw InputError(path.string() + ": is not PNG, expected a depth image");
+  PngReader reader(path, bytes);
+  reader.read_header();
+  if (!reader.is_grey() || reader.has_alpha() || reader.bits_per_channel() != 16) {
+    throw InputError(fmt::format("{}: has {} bits per channel{}, expected depth as 16-bit grey",
+                                 path.string(), reader.bits_per_channel(),
+                                 reader.is_grey() ? "" : " and colour"));
+  }
+  const cv::Mat stored = reader.read_16_bit_grey();
+  cv::Mat depth_m(stored.size(), CV_32FC1);
+  for (int y = 0; y < stored.rows; ++y) {
+    const auto* in = stored.ptr<std::uint16_t>(y);
+    auto* out = depth_m.ptr<float>(y);
+    for (int x = 0; x < stored.cols; ++x) {
+      // 65535 is what sensors write that have no measurement, and saturation is none either
+      out[x] = in[x] == 0xffff ? 0.0F : static_cast<float>(in[x] / units_per_m);
+    }
+  }
+  return depth_m;
+}
+
+}  // namespace samewhere::input

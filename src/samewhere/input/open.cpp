@@ -1,0 +1,83 @@
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/input/file_names.hpp>
+#include <samewhere/input/file_source.hpp>
+#include <samewhere/input/formats.hpp>
+#include <samewhere/input/open.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using core::InputError;
+using std::filesystem::path;
+
+// 0 means "the format's own"; what lies between is a slip of the pen.
+void check_config(const Config& config) {
+  if (config.fps != 0.0 && config.fps < 1e-3) {
+    throw InputError(fmt::format("input.fps = {}: expected 0 or at least 0.001", config.fps));
+  }
+  if (config.depth_factor != 0.0 && config.depth_factor < 1.0) {
+    throw InputError(
+        fmt::format("input.depth_factor = {}: expected 0 or at least 1", config.depth_factor));
+  }
+}
+
+[[noreturn]] void fail_unknown(const path& folder) {
+  const std::vector<std::string> names = sorted_names(folder);
+  if (names.empty()) {
+    throw InputError(folder.string() + ": the folder is empty, expected a recording");
+  }
+  for (const std::string& name : names) {
+    if (!name.starts_with("seq-") || !is_folder(folder / name)) continue;
+    throw InputError(fmt::format("{}: holds several sequences, expected one, such as {}",
+                                 folder.string(), (folder / name).string()));
+  }
+  throw InputError(folder.string() +
+                   ": holds no known recording; looked for rgb.txt (TUM RGB-D), "
+                   "frame-*.color.png or .jpg (7-Scenes), images/ with depth/, K.txt or poses.txt "
+                   "(HoloLens), *.jpg, *.jpeg or *.png (images)");
+}
+
+Recording read_folder(const path& folder, const Config& config) {
+  for (const auto& find : {&find_tum_rgbd, &find_seven_scenes, &find_hololens, &find_images}) {
+    if (std::optional<Recording> recording = find(folder, config)) return *std::move(recording);
+  }
+  fail_unknown(folder);
+}
+
+Recording read_list(const path& list, const Config& config) {
+  if (core::read_file(list).find('\0') != std::string::npos) {
+    throw InputError(list.string() +
+                     ": is a binary file, expected a folder or a text file with the path of one "
+                     "image a line");
+  }
+  return read_image_list(list, config);
+}
+
+// The last part of the path, also for "data/redkitchen/" and ".".
+std::string name_of(const path& source) {
+  std::error_code error;  // on an error the path is empty, and so is the name
+  const path whole = std::filesystem::canonical(source, error);
+  return is_folder(whole) ? whole.filename().string() : whole.stem().string();
+}
+
+}  // namespace
+
+std::unique_ptr<core::Source> open_source(const path& source, const Config& config) {
+  check_config(config);
+  if (!is_there(source)) {
+    throw InputError(source.string() +
+                     ": does not exist, expected a folder with a recording or a list of images");
+  }
+  Recording recording = is_folder(source) ? read_folder(source, config) : read_list(source, config);
+  if (!config.camera.empty()) recording.camera_file = config.camera;
+  if (config.depth_factor > 0.0) recording.depth_units_per_m = config.depth_factor;
+  return std::make_unique<FileSource>(name_of(source), std::move(recording));
+}
+
+}  // namespace samewhere::input

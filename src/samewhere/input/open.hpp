@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include <samewhere/core/source.hpp>
+#include <samewhere/input/config.hpp>
+
+namespace samewhere::input {
+
+// The recording at `source`: a folder, whose format is told by what is in it (formats.hpp), or a
+// text file that lists images. Frames are read one at a time, when asked for. Throws InputError if
+// there is nothing known there, or if anything that text files say is missing or broken; a bad
+// image is reported by next().
+std::unique_ptr<core::Source> open_source(const std::filesystem::path& source,
+                                          const Config& config);
+
+}  // namespace samewhere::input

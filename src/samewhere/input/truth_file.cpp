@@ -1,0 +1,119 @@
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/core/tum_file.hpp>
+#include <samewhere/input/file_names.hpp>
+#include <samewhere/input/truth_file.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using core::InputError;
+using core::PlaceTruth;
+using core::PlaceTruthMatrix;
+using std::filesystem::path;
+
+PlaceTruth place_truth(double value, const std::string& place) {
+  if (value == 0.0 || value == 1.0 || value == 2.0) return static_cast<PlaceTruth>(value);
+  throw InputError(fmt::format(
+      "{}: found the value {}, expected 0 (different), 1 (same) or 2 (near)", place, value));
+}
+
+// The next whole number of a PGM header; '#' comments run to the end of their line.
+int header_number(std::istream& in, const path& file) {
+  while ((in >> std::ws).peek() == '#')
+    in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  int number = 0;
+  if (in >> number && number > 0) return number;
+  throw InputError(file.string() + ": the header is broken, expected P5, width, height, maximum");
+}
+
+PlaceTruthMatrix read_pgm(const path& file, int num_frames) {
+  std::istringstream in(core::read_file(file));
+  if (in.get() != 'P' || in.get() != '5') {
+    throw InputError(file.string() + ": is not a binary PGM file (P5)");
+  }
+  const int width = header_number(in, file);
+  const int height = header_number(in, file);
+  const int maximum = header_number(in, file);
+  in.get();  // one white space ends the header
+  if (width != num_frames || height != num_frames || maximum > 255) {
+    throw InputError(
+        fmt::format("{}: is {} x {} with values up to {}, expected {} x {} (one row and column per "
+                    "frame) in 8 bits",
+                    file.string(), width, height, maximum, num_frames, num_frames));
+  }
+  const std::string values{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const auto num_values = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (values.size() != num_values) {
+    throw InputError(
+        fmt::format("{}: holds {} values, expected {}", file.string(), values.size(), num_values));
+  }
+  PlaceTruthMatrix places{num_frames, {}};
+  places.values.reserve(num_values);
+  for (const char value : values) {
+    places.values.push_back(place_truth(static_cast<unsigned char>(value), file.string()));
+  }
+  return places;
+}
+
+PlaceTruthMatrix read_text_matrix(const path& file, int num_frames) {
+  const std::vector<core::TextLine> lines = core::read_text_lines(file);
+  if (lines.size() != static_cast<std::size_t>(num_frames)) {
+    throw InputError(fmt::format("{}: has {} rows, expected {}, one per frame", file.string(),
+                                 lines.size(), num_frames));
+  }
+  PlaceTruthMatrix places{num_frames, {}};
+  for (const core::TextLine& line : lines) {
+    if (line.words.size() != lines.size()) {
+      throw InputError(fmt::format("{}: has {} columns, expected {}, one per frame", line.place,
+                                   line.words.size(), lines.size()));
+    }
+    for (std::size_t column = 0; column < line.words.size(); ++column) {
+      places.values.push_back(place_truth(core::finite_number(line, column), line.place));
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+core::Truth read_truth(const path& folder, int num_frames) {
+  core::Truth truth;
+  if (is_there(folder / "groundtruth.tum")) {
+    truth.trajectory = core::read_tum(folder / "groundtruth.tum");
+  }
+  if (is_there(folder / "same_place.pgm")) {
+    truth.places = read_pgm(folder / "same_place.pgm", num_frames);
+  } else if (is_there(folder / "same_place.txt")) {
+    truth.places = read_text_matrix(folder / "same_place.txt", num_frames);
+  }
+  return truth;
+}
+
+core::Rigid3 rigid_from_rows(const core::TextLine& line, const std::vector<double>& rows) {
+  core::require(rows.size() == 16, "a pose matrix has 16 numbers");
+  const Eigen::Matrix4d world_from_camera =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(rows.data());
+  const Eigen::Matrix3d rotation = world_from_camera.topLeftCorner<3, 3>();
+  // files round: 1e-2 passes three decimals and catches a matrix that scales or mirrors
+  constexpr double kMaxRounding = 1e-2;
+  const bool is_rotation =
+      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <
+          kMaxRounding &&
+      rotation.determinant() > 0.0;
+  if (!is_rotation || world_from_camera.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+    throw InputError(line.place +
+                     ": is no rigid transform, expected a rotation, a translation and 0 0 0 1");
+  }
+  return core::Rigid3::from_matrix(world_from_camera);
+}
+
+}  // namespace samewhere::input

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <samewhere/core/frame_pose.hpp>
+#include <samewhere/features/match_pair.hpp>
+#include <samewhere/map/config.hpp>
+#include <samewhere/scene/local_map.hpp>
+
+namespace samewhere::map {
+
+// A view with a pose, and which of its features show which landmarks of the map.
+struct TrackedView {
+  features::View view;
+  core::FramePose pose;
+  std::vector<std::pair<int, core::LandmarkId>> landmarks;  // feature, landmark
+};
+
+// How many features of the view could become landmarks: those with depth.
+int num_with_depth(const features::View& view);
+
+// Whether the view can start a map: enough features with depth.
+bool can_start(const features::View& view, const Config& config);
+
+// Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
+// lost sight of it.
+bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
+                      const Config& config);
+
+// The edit that makes the view the next keyframe. Without a pose it is the first of its session and
+// stands at `world_from_body`.
+scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
+                      const core::Rigid3& world_from_body);
+scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked);
+
+}  // namespace samewhere::map

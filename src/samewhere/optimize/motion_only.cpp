@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include <samewhere/optimize/manifold.hpp>
+#include <samewhere/optimize/motion_only.hpp>
+
+namespace samewhere::optimize {
+namespace {
+
+constexpr double kChiSquare95[] = {0.0, 0.0, 5.991, 7.815};  // by degrees of freedom
+constexpr int kMinInliers = 6;
+constexpr double kMinDepth_m = 0.05;
+constexpr double kConverged = 1e-8;
+
+struct NormalEquations {
+  core::Matrix6d hessian = core::Matrix6d::Zero();
+  core::Vector6d gradient = core::Vector6d::Zero();
+};
+
+NormalEquations linearise(const MotionProblem& problem, const MotionResult& result) {
+  NormalEquations sum;
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    if (!result.is_inlier[i]) continue;
+    const MotionResidual r =
+        motion_residual(problem, problem.observations[i], result.camera_from_world);
+    if (r.size == 0) continue;
+    const double squared = r.value.squaredNorm();
+    const double limit = kChiSquare95[r.size];
+    const double weight = squared <= limit ? 1.0 : std::sqrt(limit / squared);  // Huber
+    sum.hessian += weight * r.jacobian.transpose() * r.jacobian;
+    sum.gradient += weight * r.jacobian.transpose() * r.value;
+  }
+  return sum;
+}
+
+void descend(const MotionProblem& problem, MotionResult& result, int iterations) {
+  for (int i = 0; i < iterations; ++i) {
+    NormalEquations sum = linearise(problem, result);
+    // a little damping: a direction without evidence (all points on a line) must not run away
+    sum.hessian.diagonal().array() += 1e-6 * sum.hessian.diagonal().array().maxCoeff();
+    const Eigen::LDLT<core::Matrix6d> factor(sum.hessian);
+    const core::Vector6d step = factor.solve(-sum.gradient);
+    if (!step.allFinite()) return;
+    result.camera_from_world = retract(result.camera_from_world, step);
+    if (step.norm() < kConverged) return;
+  }
+}
+
+void sort_inliers(const MotionProblem& problem, MotionResult& result) {
+  result.num_inliers = 0;
+  double sum_squared_px = 0.0;
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    const MotionResidual r =
+        motion_residual(problem, problem.observations[i], result.camera_from_world);
+    const bool is_inlier = r.size > 0 && r.value.squaredNorm() < kChiSquare95[r.size];
+    result.is_inlier[i] = is_inlier;
+    if (!is_inlier) continue;
+    ++result.num_inliers;
+    const double sigma_px = problem.observations[i].sigma_px;
+    sum_squared_px += sigma_px * sigma_px * r.value.head<2>().squaredNorm();
+  }
+  result.reprojection_rmse_px =
+      result.num_inliers > 0 ? std::sqrt(sum_squared_px / result.num_inliers) : 0.0;
+}
+
+}  // namespace
+
+MotionResidual motion_residual(const MotionProblem& problem, const MotionObservation& observation,
+                               const core::Rigid3& camera_from_world) {
+  MotionResidual r;
+  const Eigen::Vector3d rotated = camera_from_world.rotation * observation.point_in_world;
+  const Eigen::Vector3d p = rotated + camera_from_world.translation;
+  if (p.z() < kMinDepth_m) return r;
+
+  const core::PinholeRadtan& c = problem.intrinsics;
+  const double inverse_z = 1.0 / p.z();
+  const double x = c.fx_px * p.x() * inverse_z + c.cx_px;
+  const double y = c.fy_px * p.y() * inverse_z + c.cy_px;
+  const double disparity = c.fx_px * problem.baseline_m * inverse_z;
+  const bool has_depth = observation.right_x_px >= 0.0;
+  r.size = has_depth ? 3 : 2;
+  r.value << x - observation.undistorted_px.x(), y - observation.undistorted_px.y(),
+      has_depth ? x - disparity - observation.right_x_px : 0.0;
+
+  Eigen::Matrix3d by_point;
+  by_point.row(0) << c.fx_px * inverse_z, 0.0, -c.fx_px * p.x() * inverse_z * inverse_z;
+  by_point.row(1) << 0.0, c.fy_px * inverse_z, -c.fy_px * p.y() * inverse_z * inverse_z;
+  by_point.row(2) = by_point.row(0);
+  by_point(2, 2) += disparity * inverse_z;
+  if (!has_depth) by_point.row(2).setZero();
+  r.jacobian.leftCols<3>() = by_point;
+  r.jacobian.rightCols<3>() = -by_point * core::skew(rotated);
+
+  r.value /= observation.sigma_px;
+  r.jacobian /= observation.sigma_px;
+  return r;
+}
+
+MotionResult refine_pose(const MotionProblem& problem, const core::Rigid3& camera_from_world,
+                         const Config& config) {
+  MotionResult result;
+  result.camera_from_world = camera_from_world;
+  result.is_inlier.assign(problem.observations.size(), true);
+  for (int round = 0; round < config.motion_rounds; ++round) {
+    descend(problem, result, config.motion_iterations);
+    sort_inliers(problem, result);
+    if (result.num_inliers < kMinInliers) {
+      result.camera_from_world = camera_from_world;
+      break;
+    }
+  }
+  sort_inliers(problem, result);
+  return result;
+}
+
+}  // namespace samewhere::optimize

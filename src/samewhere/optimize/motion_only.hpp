@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <samewhere/core/rig.hpp>
+#include <samewhere/optimize/config.hpp>
+
+namespace samewhere::optimize {
+
+// A point of known position and where it was seen.
+struct MotionObservation {
+  Eigen::Vector3d point_in_world = Eigen::Vector3d::Zero();  // metres
+  Eigen::Vector2d undistorted_px = Eigen::Vector2d::Zero();
+  double right_x_px = -1.0;  // in the (virtual) right picture; negative = no depth
+  double sigma_px = 1.0;     // standard deviation of the pixel coordinates
+};
+
+struct MotionProblem {
+  core::PinholeRadtan intrinsics;  // distortion is not used
+  double baseline_m = 0.0;         // of the (virtual) stereo pair
+  std::vector<MotionObservation> observations;
+};
+
+struct MotionResult {
+  core::Rigid3 camera_from_world;
+  std::vector<bool> is_inlier;  // one per observation
+  int num_inliers = 0;
+  double reprojection_rmse_px =
+      0.0;  // of the inliers, without the right picture; 0 if there are none
+};
+
+// The pose that minimises the reprojection error of the points, which stay fixed. Gauss-Newton with
+// Huber weights; after each round the observations are sorted into inliers and outliers at the 95 %
+// point of chi-square, and outliers sit out the next round. With fewer than 6 inliers the pose
+// returned is the one it started from.
+MotionResult refine_pose(const MotionProblem& problem, const core::Rigid3& camera_from_world,
+                         const Config& config);
+
+// Residual [x, y, right x] (px, divided by sigma) of one observation and its derivative by
+// retract() at the pose. `size` is 3 with depth, 2 without, 0 for a point that is not in front of
+// the camera.
+struct MotionResidual {
+  int size = 0;
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 3, 6> jacobian = Eigen::Matrix<double, 3, 6>::Zero();
+};
+
+MotionResidual motion_residual(const MotionProblem& problem, const MotionObservation& observation,
+                               const core::Rigid3& camera_from_world);
+
+}  // namespace samewhere::optimize

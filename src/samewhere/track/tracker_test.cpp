@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <samewhere/features/test_world.hpp>
+#include <samewhere/track/drift_model.hpp>
+#include <samewhere/track/tracker.hpp>
+
+namespace samewhere::track {
+namespace {
+
+// The local map of a keyframe at the origin that sees a test world: its features are its landmarks.
+scene::LocalMap local_map_of(const features::View& view) {
+  scene::LocalMap map;
+  map.reference = core::KeyframeId(0);
+  map.descriptors = view.features->descriptors;
+  for (int i = 0; i < view.features->size(); ++i) {
+    const Eigen::Vector3d point = *features::point_in_camera(view, i);
+    map.landmarks.emplace_back(static_cast<std::uint64_t>(i));
+    map.points_in_reference.push_back(point);
+    map.range_m.push_back(point.norm());
+    map.octave.push_back(0);
+  }
+  return map;
+}
+
+class TestTracker : public testing::Test {
+ protected:
+  features::TestWorld world_ = features::test_world(5);
+  scene::LocalMap map_ = local_map_of(features::test_view(world_, 0, {}));
+  Tracker tracker_{TrackerSettings{}};
+  core::Rigid3 moved_{core::exp_so3({0.02, 0.15, -0.01}), {0.1, -0.02, 0.2}};
+};
+
+double error_of(const Track& track, const core::Rigid3& truth) {
+  return core::log_r3so3(inverse(truth) * track.pose.reference_from_frame).norm();
+}
+
+TEST_F(TestTracker, FindsThePoseFromAGoodGuess) {
+  const auto track =
+      tracker_.track(features::test_view(world_, 1, moved_), map_, {moved_.rotation, {0, 0, 0.2}});
+  ASSERT_TRUE(track);
+  EXPECT_LT(error_of(*track, moved_), 0.005);
+  EXPECT_EQ(track->pose.status, core::FrameStatus::kTracking);
+  EXPECT_TRUE(track->pose.is_measured);
+  EXPECT_EQ(static_cast<int>(track->matches.size()), track->pose.num_inliers);
+  EXPECT_LT(track->reprojection_rmse_px, 1.0);
+}
+
+TEST_F(TestTracker, FindsThePoseWithoutOrWithAWrongGuess) {
+  const features::View view = features::test_view(world_, 1, moved_);
+  const core::Rigid3 wrong{core::exp_so3({0.0, -0.6, 0.2}), {-1.0, 0.5, 0.0}};
+  for (const auto& track :
+       {tracker_.track_anywhere(view, map_), tracker_.track(view, map_, wrong)}) {
+    ASSERT_TRUE(track);
+    EXPECT_LT(error_of(*track, moved_), 0.005);
+  }
+}
+
+TEST_F(TestTracker, WorksOnPixelsAloneWhereTheFrameHasNoDepth) {
+  const auto track = tracker_.track(features::test_view(world_, 1, moved_, 0.3, false), map_, {});
+  ASSERT_TRUE(track);
+  EXPECT_LT(error_of(*track, moved_), 0.01);
+}
+
+TEST_F(TestTracker, AnotherPlaceIsNoPose) {
+  const features::TestWorld elsewhere = features::test_world(6);
+  EXPECT_FALSE(tracker_.track(features::test_view(elsewhere, 1, {}), map_, {}));
+}
+
+TEST_F(TestTracker, AViewWithoutFeaturesIsNoPose) {
+  EXPECT_FALSE(tracker_.track(features::test_view({}, 1, {}), map_, {}));
+  EXPECT_FALSE(tracker_.track(features::test_view(world_, 1, {}), scene::LocalMap{}, {}));
+}
+
+TEST_F(TestTracker, FewLandmarksMakeAWeakPose) {
+  features::TestWorld sparse = world_;
+  // a view of the world of which only every twelfth point is left
+  features::TestWorld rest;
+  for (std::size_t i = 0; i < sparse.points.size(); i += 12) {
+    rest.points.push_back(sparse.points[i]);
+    rest.descriptors.push_back(sparse.descriptors[i]);
+  }
+  const features::View view = features::test_view(rest, 1, moved_);
+  const auto track = tracker_.track(view, map_, moved_);
+  ASSERT_TRUE(track) << view.features->size() << " features";
+  EXPECT_LT(track->pose.num_inliers, 60);
+  TrackerSettings strict;
+  strict.track.weak_inliers = 200;
+  EXPECT_EQ(Tracker(strict).track(view, map_, moved_)->pose.status, core::FrameStatus::kWeak);
+}
+
+TEST(DriftModel, IsLessSureTheFartherAndTheWeaker) {
+  const DriftConfig config;
+  const core::Rigid3 near{Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0}};
+  const core::Rigid3 far{core::exp_so3({0.0, 1.0, 0.0}), {2.0, 0.0, 0.0}};
+  const core::Matrix6d of_near = odometry_information(near, false, config);
+  const core::Matrix6d of_far = odometry_information(far, false, config);
+  EXPECT_NEAR(of_near(0, 0), 1.0 / std::pow(config.base_m + 0.1 * config.per_metre, 2), 1e-6);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_GT(of_near(i, i), of_far(i, i));
+    EXPECT_GT(of_far(i, i), odometry_information(far, true, config)(i, i));
+  }
+}
+
+}  // namespace
+}  // namespace samewhere::track

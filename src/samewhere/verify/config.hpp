@@ -1,0 +1,65 @@
+#pragma once
+
+#include <samewhere/core/config.hpp>
+
+namespace samewhere::verify {
+
+// What makes a candidate the best of its query.
+enum class RankBy { kSimilarity, kInliers };
+
+struct Config {
+  double min_similarity = -1.0;
+  int pause_frames = 0;
+  bool require_geometry = true;
+  RankBy rank_by = RankBy::kInliers;
+  int min_matches = 20;
+  int min_inliers = 40;
+  double min_spread_ratio = 0.12;
+  double max_error_px = 4.0;
+  double refine_radius_px = 6.0;
+  int ransac_iterations = 500;
+  double max_odometry_chi_square = 30.0;
+  double loop_sigma_m = 0.03;
+  double loop_sigma_rad = 0.01;
+};
+
+inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("min_similarity", config.min_similarity,
+        {.help = "descriptors less similar (NCC) are refused", .min = -1.0, .max = 1.0});
+  visit("pause_frames", config.pause_frames,
+        {.help = "frames after a loop in which no other is accepted, paper section on the interval",
+         .min = 0,
+         .max = 100000});
+  visit("require_geometry", config.require_geometry,
+        {.help = "false: similarity alone decides, as in the paper"});
+  visit("rank_by", config.rank_by,
+        {.help = "what makes a candidate the best of its query",
+         .choices = {"similarity", "inliers"}});
+  visit("min_matches", config.min_matches,
+        {.help = "fewer feature matches are refused", .min = 7, .max = 100000});
+  visit("min_inliers", config.min_inliers,
+        {.help = "fewer geometric inliers are refused", .min = 7, .max = 100000});
+  visit("min_spread_ratio", config.min_spread_ratio,
+        {.help = "share of the picture's 8 x 8 cells that inliers must cover",
+         .min = 0.0,
+         .max = 1.0});
+  visit("max_error_px", config.max_error_px,
+        {.help = "reprojection error of a RANSAC inlier", .min = 0.1, .max = 50.0});
+  visit("refine_radius_px", config.refine_radius_px,
+        {.help = "search radius of the second look, around the projection",
+         .min = 0.5,
+         .max = 100.0});
+  visit("ransac_iterations", config.ransac_iterations,
+        {.help = "RANSAC samples at most", .min = 1, .max = 100000});
+  visit("max_odometry_chi_square", config.max_odometry_chi_square,
+        {.help = "squared Mahalanobis distance of the correction under the drift model, 6 degrees "
+                 "of freedom",
+         .min = 1.0,
+         .max = 1e9});
+  visit("loop_sigma_m", config.loop_sigma_m,
+        {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
+  visit("loop_sigma_rad", config.loop_sigma_rad,
+        {.help = "standard deviation of a loop's rotation, radians", .min = 1e-4, .max = 3.0});
+}
+
+}  // namespace samewhere::verify

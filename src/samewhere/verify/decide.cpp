@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <samewhere/verify/decide.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
+
+namespace samewhere::verify {
+namespace {
+
+using core::Candidate;
+using core::Evidence;
+using core::Refusal;
+using core::Rejection;
+
+Rejection rejection(const Candidate& candidate, const Evidence& evidence, Refusal stage,
+                    std::string reason) {
+  return {candidate.id, evidence, stage, std::move(reason)};
+}
+
+std::optional<Rejection> check_geometry(const Candidate& candidate, const Evidence& evidence,
+                                        const Config& config) {
+  const core::GeometryEvidence& g = *evidence.geometry;
+  if (g.num_matches < config.min_matches) {
+    return rejection(
+        candidate, evidence, Refusal::kMatches,
+        fmt::format("only {} feature matches, {} needed", g.num_matches, config.min_matches));
+  }
+  if (g.num_inliers < config.min_inliers) {
+    return rejection(candidate, evidence, Refusal::kInliers,
+                     fmt::format("only {} features agree on one geometry, {} needed", g.num_inliers,
+                                 config.min_inliers));
+  }
+  if (g.spread_ratio < config.min_spread_ratio) {
+    return rejection(
+        candidate, evidence, Refusal::kSpread,
+        fmt::format("the features that agree cover {:.0f} % of the picture, {:.0f} % needed",
+                    100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
+  }
+  return std::nullopt;
+}
+
+std::optional<Rejection> check_odometry(const Candidate& candidate, const Evidence& evidence,
+                                        const Config& config) {
+  if (!evidence.odometry ||
+      evidence.odometry->mahalanobis_squared <= config.max_odometry_chi_square)
+    return std::nullopt;
+  return rejection(
+      candidate, evidence, Refusal::kOdometry,
+      fmt::format("would move the camera by {:.2f} m and {:.1f} degrees, more than odometry can "
+                  "have drifted "
+                  "(chi-square {:.0f}, at most {:.0f})",
+                  evidence.odometry->correction_m,
+                  evidence.odometry->correction_rad * 57.29577951308232,
+                  evidence.odometry->mahalanobis_squared, config.max_odometry_chi_square));
+}
+
+}  // namespace
+
+std::optional<Rejection> refuse_early(const Candidate& candidate, const Evidence& evidence,
+                                      const History& history, const Config& config) {
+  if (evidence.similarity <= config.min_similarity) {
+    return rejection(candidate, evidence, Refusal::kSimilarity,
+                     fmt::format("similarity {:.3f}, more than {:.3f} needed", evidence.similarity,
+                                 config.min_similarity));
+  }
+  if (!history.last_loop_query || config.pause_frames == 0) return std::nullopt;
+  const auto since = candidate.query.index() - history.last_loop_query->index();
+  if (since == 0 || since > static_cast<std::uint64_t>(config.pause_frames)) return std::nullopt;
+  return rejection(
+      candidate, evidence, Refusal::kPause,
+      fmt::format("{} frames after a loop, detection pauses for {}", since, config.pause_frames));
+}
+
+core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const History& history,
+                     const Config& config) {
+  if (auto refused = refuse_early(candidate, evidence, history, config)) return *refused;
+  core::LoopClosure loop;
+  loop.candidate = candidate.id;
+  loop.evidence = evidence;
+  loop.information = loop_information(config);
+  if (!evidence.geometry) {
+    if (!config.require_geometry) return loop;
+    return rejection(candidate, evidence, Refusal::kMatches, "geometry was not measured");
+  }
+  auto refused = check_geometry(candidate, evidence, config);
+  if (!refused) refused = check_odometry(candidate, evidence, config);
+  if (refused && config.require_geometry) return *refused;
+  // without required geometry a pose is used if it is good, and the loop is counted without one if
+  // not
+  if (!refused) loop.match_from_query = evidence.geometry->match_from_query;
+  return loop;
+}
+
+double score(const Evidence& evidence, const Config& config) {
+  if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
+  const int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
+  return num_inliers + 0.499 * (1.0 + evidence.similarity);
+}
+
+}  // namespace samewhere::verify

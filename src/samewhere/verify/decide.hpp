@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include <samewhere/core/verdict.hpp>
+#include <samewhere/verify/config.hpp>
+
+namespace samewhere::verify {
+
+// What was decided before, as far as it bears on the next decision.
+struct History {
+  std::optional<core::FrameId> last_loop_query;
+};
+
+// The verdict on measured evidence: the checks in the order of core::Refusal, the first that fails
+// refuses. Pure: the same evidence, history and thresholds give the same verdict, without any
+// picture.
+core::Verdict decide(const core::Candidate& candidate, const core::Evidence& evidence,
+                     const History& history, const Config& config);
+
+// Whether the evidence so far is enough to refuse, so that nothing dearer need be measured.
+std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
+                                            const core::Evidence& evidence, const History& history,
+                                            const Config& config);
+
+// How sure the evidence is, for the ranking of one query's candidates and for precision-recall
+// curves: the similarity, or the inliers plus the similarity mapped into [0, 1), which then only
+// breaks ties.
+double score(const core::Evidence& evidence, const Config& config);
+
+}  // namespace samewhere::verify

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/features/match_pair.hpp>
+#include <samewhere/features/match_projected.hpp>
+#include <samewhere/geometry/camera.hpp>
+#include <samewhere/geometry/pnp.hpp>
+#include <samewhere/geometry/two_view.hpp>
+#include <samewhere/optimize/motion_only.hpp>
+#include <samewhere/verify/measure.hpp>
+
+namespace samewhere::verify {
+namespace {
+
+using core::GeometryEvidence;
+using features::Match;  // first = feature of the match, second = feature of the query
+using features::View;
+
+constexpr int kSpreadCells = 8;
+constexpr int kMinPointsForPose = 12;
+
+// Share of the query image's 8 x 8 cells that hold one of these features.
+double spread_ratio(const View& query, const std::vector<int>& query_features) {
+  std::set<std::pair<int, int>> cells;
+  for (const int i : query_features) {
+    const Eigen::Vector2f& pixel = query.features->raw_px[static_cast<std::size_t>(i)];
+    cells.insert(
+        {static_cast<int>(pixel.x() * kSpreadCells / static_cast<float>(query.image_size_px.width)),
+         static_cast<int>(pixel.y() * kSpreadCells /
+                          static_cast<float>(query.image_size_px.height))});
+  }
+  return static_cast<double>(cells.size()) / (kSpreadCells * kSpreadCells);
+}
+
+// The points of the match in its body frame; nothing where depth is unknown.
+std::vector<std::optional<Eigen::Vector3d>> points_of(const View& match) {
+  std::vector<std::optional<Eigen::Vector3d>> points;
+  for (int i = 0; i < match.features->size(); ++i) {
+    auto point = features::point_in_camera(match, i);
+    if (point) point = match.rig->body_from_camera[0] * *point;
+    points.push_back(point);
+  }
+  return points;
+}
+
+// One candidate with depth: everything the steps below share.
+class PoseMeasurement {
+ public:
+  PoseMeasurement(const View& query, const View& match, const MeasureSettings& settings)
+      : query_(query), match_(match), settings_(settings), points_(points_of(match)) {}
+
+  GeometryEvidence measure(const std::vector<Match>& matches, core::Random& random) const {
+    GeometryEvidence evidence;
+    evidence.num_matches = static_cast<int>(matches.size());
+    const std::vector<Match> with_point = usable(matches);
+    const auto pose = geometry::estimate_pose(pnp_problem(with_point),
+                                              {.max_error_px = settings_.verify.max_error_px,
+                                               .max_iterations = settings_.verify.ransac_iterations,
+                                               .min_inliers = kMinPointsForPose},
+                                              random);
+    if (!pose) return evidence;
+    const auto coarse = refine_pose(motion_problem(with_point), pose->model, settings_.optimize);
+    const std::vector<Match> again = second_look(coarse.camera_from_world);
+    const auto fine =
+        refine_pose(motion_problem(again), coarse.camera_from_world, settings_.optimize);
+    // the ratio speaks of the first, blind matches: the second look finds what fits by construction
+    evidence.inlier_ratio =
+        static_cast<double>(pose->inliers.size()) / std::max<double>(1.0, evidence.num_matches);
+    evidence.num_inliers = fine.num_inliers;
+    evidence.reprojection_rmse_px = fine.reprojection_rmse_px;
+    evidence.spread_ratio = spread_ratio(query_, inlier_features(again, fine));
+    const core::Rigid3 query_from_match = query_.rig->body_from_camera[0] * fine.camera_from_world;
+    evidence.match_from_query = core::Sim3::from_rigid(inverse(query_from_match));
+    return evidence;
+  }
+
+ private:
+  std::vector<Match> usable(const std::vector<Match>& matches) const {
+    std::vector<Match> with_point;
+    for (const auto& match : matches) {
+      if (points_[static_cast<std::size_t>(match.first)]) with_point.push_back(match);
+    }
+    return with_point;
+  }
+
+  geometry::PnpProblem pnp_problem(const std::vector<Match>& matches) const {
+    const core::Camera& camera = query_.rig->cameras[0];
+    geometry::PnpProblem problem;
+    problem.focal_px = geometry::focal_px(camera);
+    for (const auto& match : matches) {
+      const auto pixel =
+          query_.features->undistorted_px[static_cast<std::size_t>(match.second)].cast<double>();
+      problem.points_in_world.push_back(*points_[static_cast<std::size_t>(match.first)]);
+      problem.bearings.push_back(geometry::bearing_of_undistorted(camera, pixel));
+    }
+    return problem;
+  }
+
+  optimize::MotionProblem motion_problem(const std::vector<Match>& matches) const {
+    optimize::MotionProblem problem{
+        geometry::pinhole(query_.rig->cameras[0]), settings_.features.virtual_baseline_m, {}};
+    for (const auto& match : matches) {
+      const auto feature = static_cast<std::size_t>(match.second);
+      problem.observations.push_back(
+          {*points_[static_cast<std::size_t>(match.first)],
+           query_.features->undistorted_px[feature].cast<double>(),
+           query_.features->right_x_px[feature],
+           std::pow(settings_.features.scale_factor, query_.features->octave[feature])});
+    }
+    return problem;
+  }
+
+  std::vector<Match> second_look(const core::Rigid3& camera_from_match) const {
+    std::vector<features::ProjectedPoint> projected;
+    for (int i = 0; i < match_.features->size(); ++i) {
+      const auto& point = points_[static_cast<std::size_t>(i)];
+      if (!point) continue;
+      const auto pixel =
+          geometry::project_undistorted(query_.rig->cameras[0], camera_from_match * *point);
+      if (pixel)
+        projected.push_back({i, *pixel, match_.features->octave[static_cast<std::size_t>(i)]});
+    }
+    return match_projected(projected, match_.features->descriptors, query_,
+                           settings_.verify.refine_radius_px, settings_.features);
+  }
+
+  static std::vector<int> inlier_features(const std::vector<Match>& matches,
+                                          const optimize::MotionResult& motion) {
+    std::vector<int> inliers;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (motion.is_inlier[i]) inliers.push_back(matches[i].second);
+    }
+    return inliers;
+  }
+
+  const View& query_;
+  const View& match_;
+  const MeasureSettings& settings_;
+  std::vector<std::optional<Eigen::Vector3d>> points_;
+};
+
+GeometryEvidence measure_epipolar(const View& query, const View& match,
+                                  const std::vector<Match>& matches, const Config& config,
+                                  core::Random& random) {
+  GeometryEvidence evidence;
+  evidence.num_matches = static_cast<int>(matches.size());
+  geometry::PixelPairs pairs;
+  for (const auto& pair : matches) {
+    pairs.first_px.push_back(
+        match.features->undistorted_px[static_cast<std::size_t>(pair.first)].cast<double>());
+    pairs.second_px.push_back(
+        query.features->undistorted_px[static_cast<std::size_t>(pair.second)].cast<double>());
+  }
+  const auto found = geometry::estimate_fundamental(
+      pairs, {.max_error_px = config.max_error_px, .max_iterations = config.ransac_iterations},
+      random);
+  if (!found) return evidence;
+  std::vector<int> inlier_features;
+  double sum_squared = 0.0;
+  for (const int i : found->inliers) {
+    const auto k = static_cast<std::size_t>(i);
+    inlier_features.push_back(matches[k].second);
+    sum_squared += geometry::sampson_squared(found->model, pairs.first_px[k], pairs.second_px[k]);
+  }
+  evidence.num_inliers = static_cast<int>(inlier_features.size());
+  evidence.inlier_ratio = static_cast<double>(evidence.num_inliers) / evidence.num_matches;
+  evidence.reprojection_rmse_px = std::sqrt(sum_squared / evidence.num_inliers);
+  evidence.spread_ratio = spread_ratio(query, inlier_features);
+  return evidence;
+}
+
+bool has_depth(const View& view) {
+  const auto& depth_m = view.features->depth_m;
+  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
+}
+
+}  // namespace
+
+GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& query,
+                                  const View& match, const MeasureSettings& settings) {
+  // seeded by the pair, not by a counter: judging a candidate again gives the same evidence
+  const std::uint64_t pair_seed = core::seed_of(settings.seed, "verify", candidate.query.value());
+  core::Random random(core::seed_of(pair_seed, "match", candidate.match.value()));
+  const std::vector<Match> matches =
+      match_pair(match.features->descriptors, query.features->descriptors, settings.features);
+  const bool can_have_pose =
+      query.rig->is_calibrated() && match.rig->is_calibrated() && has_depth(match);
+  if (can_have_pose) return PoseMeasurement(query, match, settings).measure(matches, random);
+  return measure_epipolar(query, match, matches, settings.verify, random);
+}
+
+}  // namespace samewhere::verify

@@ -1,0 +1,61 @@
+#include <Eigen/Cholesky>
+
+#include <samewhere/geometry/uncertain_pose.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
+
+namespace samewhere::verify {
+namespace {
+
+using geometry::UncertainPose;
+
+UncertainPose edge_of(const scene::Keyframe& keyframe) {
+  return {keyframe.odometry->parent_from_keyframe, keyframe.odometry->information.inverse()};
+}
+
+// Odometry from match to query through their youngest common ancestor; keyframes are older than
+// their children. Chains without a common ancestor (a new session) know nothing of each other:
+// infinitely uncertain.
+std::optional<UncertainPose> odometry_between(const scene::MapVersion& map, core::KeyframeId query,
+                                              core::KeyframeId match) {
+  UncertainPose ancestor_from_query;
+  UncertainPose ancestor_from_match;
+  while (query != match) {
+    const bool climb_query = query > match;
+    const scene::Keyframe& younger = map.at(climb_query ? query : match);
+    if (!younger.odometry) return std::nullopt;
+    UncertainPose& chain = climb_query ? ancestor_from_query : ancestor_from_match;
+    chain = compose(edge_of(younger), chain);
+    (climb_query ? query : match) = younger.odometry->parent;
+  }
+  return compose(inverse(ancestor_from_match), ancestor_from_query);
+}
+
+}  // namespace
+
+core::OdometryEvidence measure_odometry(const scene::MapVersion& map, core::KeyframeId query,
+                                        core::KeyframeId match,
+                                        const core::Rigid3& match_from_query,
+                                        const Config& config) {
+  const core::Rigid3 known = inverse(map.at(match).world_from_body) * map.at(query).world_from_body;
+  core::Vector6d correction;
+  correction << match_from_query.translation - known.translation,
+      core::log_so3(known.rotation.conjugate() * match_from_query.rotation);
+
+  core::OdometryEvidence evidence;
+  evidence.correction_m = correction.head<3>().norm();
+  evidence.correction_rad = correction.tail<3>().norm();
+  if (const auto odometry = odometry_between(map, query, match)) {
+    const core::Matrix6d covariance = odometry->covariance + loop_information(config).inverse();
+    evidence.mahalanobis_squared = correction.dot(covariance.llt().solve(correction));
+  }
+  return evidence;
+}
+
+core::Matrix6d loop_information(const Config& config) {
+  core::Vector6d diagonal;
+  diagonal << Eigen::Vector3d::Constant(1.0 / (config.loop_sigma_m * config.loop_sigma_m)),
+      Eigen::Vector3d::Constant(1.0 / (config.loop_sigma_rad * config.loop_sigma_rad));
+  return diagonal.asDiagonal();
+}
+
+}  // namespace samewhere::verify

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <samewhere/core/verdict.hpp>
+#include <samewhere/scene/map_version.hpp>
+#include <samewhere/verify/config.hpp>
+
+namespace samewhere::verify {
+
+// How far a loop would move the query from where the map has it, against the drift that odometry
+// may have gathered between the two keyframes (their path through the parents; information of the
+// odometry edges).
+core::OdometryEvidence measure_odometry(const scene::MapVersion& map, core::KeyframeId query,
+                                        core::KeyframeId match,
+                                        const core::Rigid3& match_from_query, const Config& config);
+
+// Information of a loop's relative pose: independent errors, loop_sigma_m and loop_sigma_rad.
+core::Matrix6d loop_information(const Config& config);
+
+}  // namespace samewhere::verify

@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <samewhere/features/test_world.hpp>
+#include <samewhere/verify/decide.hpp>
+#include <samewhere/verify/measure.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
+
+namespace samewhere::verify {
+namespace {
+
+core::Candidate candidate(int query, int match, double similarity = 0.8) {
+  return {core::CandidateId(0), core::FrameId(static_cast<std::uint64_t>(query)),
+          core::FrameId(static_cast<std::uint64_t>(match)), similarity};
+}
+
+const core::Rigid3 kMoved{core::exp_so3({0.05, -0.2, 0.02}), {0.3, 0.05, -0.2}};
+
+TEST(MeasureGeometry, FindsTheRelativePoseOfTheSamePlace) {
+  const features::TestWorld world = features::test_world(1);
+  const auto evidence = measure_geometry(candidate(9, 0), features::test_view(world, 9, kMoved),
+                                         features::test_view(world, 0, {}), {});
+  ASSERT_TRUE(evidence.match_from_query);
+  EXPECT_LT(core::log_r3so3(inverse(kMoved) * rigid_part(*evidence.match_from_query)).norm(),
+            0.005);
+  EXPECT_GT(evidence.num_inliers, 100);
+  EXPECT_GT(evidence.spread_ratio, 0.5);
+  EXPECT_LT(evidence.reprojection_rmse_px, 1.0);
+}
+
+TEST(MeasureGeometry, WithoutDepthItCountsEpipolarInliersAndHasNoPose) {
+  const features::TestWorld world = features::test_world(1);
+  const auto evidence =
+      measure_geometry(candidate(9, 0), features::test_view(world, 9, kMoved, 0.3, false),
+                       features::test_view(world, 0, {}, 0.3, false), {});
+  EXPECT_FALSE(evidence.match_from_query);
+  EXPECT_GT(evidence.num_inliers, 100);
+}
+
+TEST(MeasureGeometry, TwoPlacesHaveNothingInCommon) {
+  const auto evidence =
+      measure_geometry(candidate(9, 0), features::test_view(features::test_world(1), 9, {}),
+                       features::test_view(features::test_world(2), 0, {}), {});
+  EXPECT_LT(evidence.num_inliers, 15);
+}
+
+TEST(MeasureGeometry, ABlackViewGivesZeros) {
+  const features::View black = features::test_view({}, 9, {});
+  const auto evidence = measure_geometry(candidate(9, 0), black,
+                                         features::test_view(features::test_world(1), 0, {}), {});
+  EXPECT_EQ(evidence.num_matches, 0);
+  EXPECT_EQ(evidence.num_inliers, 0);
+  EXPECT_EQ(evidence.spread_ratio, 0.0);
+}
+
+TEST(MeasureGeometry, TheSamePairGivesTheSameBitsWheneverItIsAsked) {
+  const features::TestWorld world = features::test_world(4);
+  const features::View query = features::test_view(world, 9, kMoved);
+  const features::View match = features::test_view(world, 0, {});
+  const auto first = measure_geometry(candidate(9, 0), query, match, {});
+  measure_geometry(candidate(9, 3), query, match, {});
+  const auto second = measure_geometry(candidate(9, 0), query, match, {});
+  EXPECT_EQ(first.match_from_query->translation, second.match_from_query->translation);
+  EXPECT_EQ(first.num_inliers, second.num_inliers);
+}
+
+core::Evidence good_evidence() {
+  core::Evidence evidence{.similarity = 0.8};
+  evidence.geometry = core::GeometryEvidence{120, 90, 0.75, 0.5, 1.0, core::Sim3{}};
+  evidence.odometry = core::OdometryEvidence{0.1, 0.01, 2.0};
+  return evidence;
+}
+
+// The stage that refuses, or "accepted".
+std::string_view stage(const core::Evidence& evidence, const Config& config,
+                       const History& history = {}) {
+  return core::stage_of(decide(candidate(100, 0, evidence.similarity), evidence, history, config));
+}
+
+TEST(Decide, GoodEvidenceIsALoopWithAPose) {
+  const auto verdict = decide(candidate(100, 0), good_evidence(), {}, {});
+  ASSERT_TRUE(core::is_loop(verdict));
+  EXPECT_TRUE(std::get<core::LoopClosure>(verdict).match_from_query);
+}
+
+TEST(Decide, EachCheckRefusesUnderItsOwnName) {
+  const Config config;
+  core::Evidence evidence = good_evidence();
+  evidence.geometry->num_matches = config.min_matches - 1;
+  EXPECT_EQ(stage(evidence, config), "matches");
+  evidence = good_evidence();
+  evidence.geometry->num_inliers = config.min_inliers - 1;
+  EXPECT_EQ(stage(evidence, config), "inliers");
+  evidence = good_evidence();
+  evidence.geometry->spread_ratio = 0.5 * config.min_spread_ratio;
+  EXPECT_EQ(stage(evidence, config), "spread");
+  evidence = good_evidence();
+  evidence.odometry->mahalanobis_squared = 2.0 * config.max_odometry_chi_square;
+  EXPECT_EQ(stage(evidence, config), "odometry");
+  evidence = good_evidence();
+  EXPECT_EQ(stage(evidence, {.min_similarity = 0.9}), "similarity");
+  EXPECT_EQ(stage(evidence, config), "accepted");
+}
+
+TEST(Decide, ARefusalSaysWhyInASentenceWithItsFigures) {
+  core::Evidence evidence = good_evidence();
+  evidence.geometry->num_inliers = 17;
+  const std::string reason =
+      core::reason_of(decide(candidate(100, 0), evidence, {}, {.min_inliers = 40}));
+  EXPECT_NE(reason.find("17"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("40"), std::string::npos) << reason;
+}
+
+TEST(Decide, AfterALoopDetectionPausesForTenFramesAndResumesAtTheEleventh) {
+  const Config paper{.pause_frames = 10};
+  const auto after = [&](int frames) {
+    return stage(good_evidence(), paper, {core::FrameId(static_cast<std::uint64_t>(100 - frames))});
+  };
+  EXPECT_EQ(after(1), "pause");
+  EXPECT_EQ(after(10), "pause");
+  EXPECT_EQ(after(11), "accepted");
+}
+
+TEST(Decide, WhereGeometryIsNotRequiredALoopWithoutAGoodPoseIsCountedButHasNone) {
+  core::Evidence evidence = good_evidence();
+  evidence.geometry->num_inliers = 3;
+  const auto verdict = decide(candidate(100, 0), evidence, {}, {.require_geometry = false});
+  ASSERT_TRUE(core::is_loop(verdict));
+  EXPECT_FALSE(std::get<core::LoopClosure>(verdict).match_from_query);
+}
+
+TEST(Score, InliersComeFirstAndSimilarityBreaksTies) {
+  core::Evidence few = good_evidence();
+  few.geometry->num_inliers = 40;
+  few.similarity = 1.0;
+  core::Evidence more = good_evidence();
+  more.geometry->num_inliers = 41;
+  more.similarity = -1.0;
+  const Config by_inliers{.rank_by = RankBy::kInliers};
+  EXPECT_GT(score(more, by_inliers), score(few, by_inliers));
+  EXPECT_LT(score(more, {.rank_by = RankBy::kSimilarity}),
+            score(few, {.rank_by = RankBy::kSimilarity}));
+  more.geometry->num_inliers = 40;
+  EXPECT_LT(score(more, by_inliers), score(few, by_inliers));
+}
+
+// A straight corridor of keyframes one metre apart.
+scene::MapVersion corridor(int count) {
+  scene::Edit edit;
+  const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0, 0, 1}};
+  core::Rigid3 pose;
+  for (int i = 0; i < count; ++i) {
+    scene::Keyframe keyframe;
+    keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
+    keyframe.world_from_body = pose;
+    if (i > 0) {
+      keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), step,
+                           400.0 * core::Matrix6d::Identity()};
+    }
+    edit.keyframes.push_back(keyframe);
+    pose = pose * step;
+  }
+  return apply(scene::MapVersion{}, edit);
+}
+
+TEST(MeasureOdometry, ALoopThatAgreesWithOdometryMovesNothing) {
+  const auto evidence = measure_odometry(corridor(10), core::KeyframeId(9), core::KeyframeId(0),
+                                         {Eigen::Quaterniond::Identity(), {0, 0, 9}}, {});
+  EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
+  EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
+}
+
+TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALongOne) {
+  const core::Rigid3 beside{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.0}};
+  const auto after = [&](int steps) {
+    core::Rigid3 match_from_query = beside;
+    match_from_query.translation.z() = steps - 1.0;  // one metre short of what odometry says
+    return measure_odometry(corridor(steps + 1),
+                            core::KeyframeId(static_cast<std::uint64_t>(steps)),
+                            core::KeyframeId(0), match_from_query, {});
+  };
+  EXPECT_NEAR(after(5).correction_m, 1.0, 1e-9);
+  EXPECT_GT(after(5).mahalanobis_squared, Config{}.max_odometry_chi_square);
+  EXPECT_LT(after(60).mahalanobis_squared, after(5).mahalanobis_squared / 5.0);
+}
+
+TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
+  scene::MapVersion map = corridor(3);
+  scene::Edit edit;
+  edit.keyframes.resize(1);
+  edit.keyframes[0].id = core::KeyframeId(3);
+  map = apply(map, edit);
+  const auto evidence = measure_odometry(map, core::KeyframeId(3), core::KeyframeId(0), {}, {});
+  EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
+}
+
+}  // namespace
+}  // namespace samewhere::verify
