@@ -100,7 +100,8 @@ TEST(Similarity, DotAddsEveryElementOfEveryLength) {
     std::vector<float> x;
     for (std::size_t i = 0; i < size; ++i) x.push_back(static_cast<float>(i + 1));
     const std::vector<float> ones(size, 1.0F);
-    EXPECT_EQ(dot(x, ones), static_cast<float>(size * (size + 1) / 2)) << "size " << size;
+    const std::size_t sum = size * (size + 1) / 2;
+    EXPECT_EQ(dot(x, ones), static_cast<float>(sum)) << "size " << size;
   }
 }
 

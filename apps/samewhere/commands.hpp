@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace samewhere::app {
+
+// Exit codes that scripts rely on.
+inline constexpr int kDone = 0;
+inline constexpr int kBadInput = 2;
+inline constexpr int kBrokenPromise = 3;
+inline constexpr int kInterrupted = 130;
+
+// Each adds its command; when it was chosen, its work runs during parsing and leaves the exit code
+// in `exit_code`.
+void add_run_command(CLI::App& app, int& exit_code);
+void add_loops_command(CLI::App& app, int& exit_code);
+void add_eval_command(CLI::App& app);
+void add_config_command(CLI::App& app);
+
+}  // namespace samewhere::app

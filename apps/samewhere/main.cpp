@@ -1,0 +1,57 @@
+#include <exception>
+
+#include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
+
+#include "commands.hpp"
+#include <samewhere/core/errors.hpp>
+
+namespace samewhere::app {
+namespace {
+
+// One line, whatever the library put into the message.
+int complain(std::string message, int exit_code) {
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  fmt::print(stderr, "samewhere: {}\n", message);
+  return exit_code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Visual SLAM that knows when two places only look the same");
+  app.set_version_flag("--version", "samewhere " SAMEWHERE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "`samewhere COMMAND --help` shows examples. Start with: samewhere run twin:office-loop");
+  int exit_code = kDone;
+  add_run_command(app, exit_code);
+  add_loops_command(app, exit_code);
+  add_eval_command(app);
+  add_config_command(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // help and version are no errors
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return complain(std::string(error.what()) + " (see samewhere --help)", kBadInput);
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace samewhere::app
+
+int main(int argc, char** argv) {
+  using namespace samewhere;
+  // parallelism is between stages, and the same bits come out on any number of cores
+  cv::setNumThreads(1);
+  try {
+    return app::run(argc, argv);
+  } catch (const core::InputError& error) {
+    return app::complain(error.what(), app::kBadInput);
+  } catch (const std::exception& error) {
+    return app::complain(std::string("this is a bug of ours: ") + error.what(),
+                         app::kBrokenPromise);
+  }
+}

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <samewhere/core/config.hpp>
+
+namespace samewhere::describe {
+
+struct HogConfig {
+  int width_px = 160;
+  int height_px = 120;
+  int cell_px = 20;
+  double weak_gradient = 32.0;  // where recognition of warped train_nyu images peaks
+};
+
+struct Config {
+  // The published "360x480" read as rows x columns, which keeps the 4:3 of the usual camera.
+  int width_px = 480;
+  int height_px = 360;
+  bool equalize = true;
+  HogConfig hog;
+};
+
+inline void visit_fields(HogConfig& config, core::FieldVisitor& visit) {
+  visit("width_px", config.width_px,
+        {.help = "the view is shrunk to this width; a multiple of cell_px", .min = 2, .max = 4096});
+  visit("height_px", config.height_px,
+        {.help = "and to this height; a multiple of cell_px", .min = 2, .max = 4096});
+  visit("cell_px", config.cell_px,
+        {.help = "side of a cell, one histogram of orientations each", .min = 1, .max = 1024});
+  visit("weak_gradient", config.weak_gradient,
+        {.help = "mean gradient (grey levels across two pixels) at which a block counts for 0.7; "
+                 "weaker ones fade, at 0 none does",
+         .min = 0.0,
+         .max = 360.0});
+}
+
+inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("width_px", config.width_px,
+        {.help = "columns of the image after preprocessing", .min = 1, .max = 4096});
+  visit("height_px", config.height_px,
+        {.help = "rows of the image after preprocessing", .min = 1, .max = 4096});
+  visit("equalize", config.equalize, {.help = "histogram equalisation, eq. (1)-(4)"});
+  visit("hog", config.hog, {.help = "histograms of oriented gradients"});
+}
+
+}  // namespace samewhere::describe

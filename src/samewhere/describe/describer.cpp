@@ -1,0 +1,63 @@
+#include <string_view>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/similarity.hpp>
+#include <samewhere/describe/describer.hpp>
+#include <samewhere/describe/hog.hpp>
+#include <samewhere/describe/preprocess.hpp>
+
+namespace samewhere::describe {
+namespace {
+
+// Goes up when the same settings give another vector.
+constexpr std::string_view kHogVersion = "hog 1\n";
+
+// FNV-1a (Fowler, Noll and Vo).
+std::uint64_t hash_of(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
+void check_cells_fit(std::string_view key, int side_px, int cell_px) {
+  if (side_px % cell_px == 0 && side_px >= kHogCellsPerBlock * cell_px) return;
+  throw core::InputError(
+      fmt::format("describe.hog.{} = {} must be a multiple of describe.hog.cell_px = {}, and at "
+                  "least twice as much",
+                  key, side_px, cell_px));
+}
+
+class HogDescriber : public Describer {
+ public:
+  explicit HogDescriber(const Config& config)
+      : config_(config),
+        checksum_(hash_of(std::string(kHogVersion) + core::config_as_yaml(config))) {
+    check_cells_fit("width_px", config.hog.width_px, config.hog.cell_px);
+    check_cells_fit("height_px", config.hog.height_px, config.hog.cell_px);
+  }
+
+  core::Descriptor describe(core::FrameId frame, const cv::Mat& image) override {
+    cv::Mat small;
+    cv::resize(preprocess(image, config_), small,
+               cv::Size(config_.hog.width_px, config_.hog.height_px), 0.0, 0.0, cv::INTER_AREA);
+    return {frame, core::unit(hog(small, config_.hog.cell_px, config_.hog.weak_gradient)),
+            checksum_};
+  }
+
+  std::uint64_t checksum() const override { return checksum_; }
+
+ private:
+  Config config_;
+  std::uint64_t checksum_;
+};
+
+}  // namespace
+
+std::unique_ptr<Describer> make_describer(const Config& config) {
+  return std::make_unique<HogDescriber>(config);
+}
+
+}  // namespace samewhere::describe

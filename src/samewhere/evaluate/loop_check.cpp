@@ -1,0 +1,72 @@
+#include <numbers>
+
+#include <samewhere/evaluate/loop_check.hpp>
+#include <samewhere/evaluate/precision_recall.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
+
+namespace samewhere::evaluate {
+namespace {
+
+constexpr double kMaxTranslationError_m = 0.2;
+constexpr double kMaxRotationError_deg = 6.0;
+
+std::optional<core::Rigid3> true_match_from_query(const AcceptedLoop& loop,
+                                                  const core::Trajectory& truth) {
+  const std::optional<core::Rigid3> world_from_query = truth_at(truth, loop.query_stamp_s);
+  const std::optional<core::Rigid3> world_from_match = truth_at(truth, loop.match_stamp_s);
+  if (!world_from_query || !world_from_match) return std::nullopt;
+  return core::inverse(*world_from_match) * *world_from_query;
+}
+
+CheckedLoop check_by_pose(const AcceptedLoop& loop, const core::Rigid3& match_from_query,
+                          const core::Rigid3& true_pose) {
+  const core::Rigid3 error = core::inverse(true_pose) * match_from_query;
+  const double translation_error_m = error.translation.norm();
+  const double rotation_error_deg = core::angle_rad(error.rotation) * 180.0 / std::numbers::pi;
+  // asked this way round so that a pose that is not finite is wrong
+  const bool is_right =
+      translation_error_m <= kMaxTranslationError_m && rotation_error_deg <= kMaxRotationError_deg;
+  return {loop, is_right ? LoopTruth::kRight : LoopTruth::kWrong, translation_error_m,
+          rotation_error_deg};
+}
+
+LoopTruth truth_by_matrix(const AcceptedLoop& loop, const core::PlaceTruthMatrix& places) {
+  switch (place_truth_of(places, loop.query, loop.match)) {
+    case core::PlaceTruth::kSame:
+      return LoopTruth::kRight;
+    case core::PlaceTruth::kDifferent:
+      return LoopTruth::kWrong;
+    case core::PlaceTruth::kNear:
+      break;
+  }
+  return LoopTruth::kUnknown;
+}
+
+CheckedLoop check(const AcceptedLoop& loop, const core::Truth& truth, double scale) {
+  const std::optional<core::Rigid3> true_pose = true_match_from_query(loop, truth.trajectory);
+  if (true_pose && loop.match_from_query) {
+    core::Rigid3 match_from_query = *loop.match_from_query;
+    match_from_query.translation *= scale;
+    return check_by_pose(loop, match_from_query, *true_pose);
+  }
+  CheckedLoop checked{loop, LoopTruth::kUnknown, std::nullopt, std::nullopt};
+  if (truth.places) checked.truth = truth_by_matrix(loop, *truth.places);
+  return checked;
+}
+
+}  // namespace
+
+LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth& truth,
+                      double scale) {
+  LoopCheck result;
+  for (const AcceptedLoop& loop : loops) {
+    result.loops.push_back(check(loop, truth, scale));
+    const LoopTruth found = result.loops.back().truth;
+    result.num_right += found == LoopTruth::kRight ? 1 : 0;
+    result.num_wrong += found == LoopTruth::kWrong ? 1 : 0;
+    result.num_unknown += found == LoopTruth::kUnknown ? 1 : 0;
+  }
+  return result;
+}
+
+}  // namespace samewhere::evaluate

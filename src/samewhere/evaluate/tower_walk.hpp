@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <samewhere/evaluate/precision_recall.hpp>
+
+namespace samewhere::evaluate {
+
+// Where one image of a walk was taken.
+struct WalkPlace {
+  std::string floor;
+  std::string clip;  // one piece of film
+};
+
+// Reads lines "image floor clip" (core::read_text_lines). Throws InputError naming file and line on
+// a line with fewer words.
+std::vector<WalkPlace> read_walk(const std::filesystem::path& path);
+
+// Accepted loops of a walk through floors that look alike, where hardly anything is seen twice:
+// every loop between two floors is wrong.
+struct WalkCounts {
+  int num_loops = 0;
+  int num_wrong = 0;       // join two floors
+  int num_same_floor = 0;  //
+  int num_same_clip = 0;   // of these
+};
+
+// Throws InputError on a loop outside the walk.
+WalkCounts count_walk(const std::vector<WalkPlace>& walk, const std::vector<Match>& accepted);
+
+}  // namespace samewhere::evaluate

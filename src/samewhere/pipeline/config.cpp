@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/paper_profile.hpp>
+
+namespace samewhere::pipeline {
+
+std::vector<std::string> profile_names() { return {"default", "paper"}; }
+
+Config profile(const std::string& name) {
+  Config config;
+  if (name == "default") return config;
+  if (name == "paper") {
+    core::read_config(config, kPaperProfile, "configs/paper.yaml");
+    return config;
+  }
+  throw core::InputError(fmt::format("unknown profile {}; expected one of: {}", name,
+                                     fmt::join(profile_names(), ", ")));
+}
+
+Config load_config(const std::string& profile_name, const std::filesystem::path& file,
+                   const std::vector<std::string>& assignments) {
+  Config config = profile(profile_name);
+  if (!file.empty()) core::read_config(config, core::read_file(file), file.string());
+  for (const auto& assignment : assignments) core::set_config(config, assignment);
+  return config;
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,137 @@
+#include <map>
+
+#include <fmt/format.h>
+
+#include <samewhere/pipeline/figures.hpp>
+#include <samewhere/report/frames.hpp>
+#include <samewhere/report/funnel.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+using report::Figure;
+
+std::vector<evaluate::AcceptedLoop> accepted_loops(const report::RunRecord& record) {
+  std::map<core::FrameId, double> stamp_of;
+  for (const auto& frame : record.frames) stamp_of[frame.pose.frame] = frame.pose.stamp_s;
+  std::vector<evaluate::AcceptedLoop> loops;
+  for (const auto* row : report::final_rows(record.ledger)) {
+    const auto* closure = std::get_if<core::LoopClosure>(&row->verdict);
+    if (closure == nullptr) continue;
+    evaluate::AcceptedLoop loop;
+    loop.query = static_cast<int>(row->candidate.query.index());
+    loop.match = static_cast<int>(row->candidate.match.index());
+    loop.query_stamp_s = stamp_of.at(row->candidate.query);
+    loop.match_stamp_s = stamp_of.at(row->candidate.match);
+    if (closure->match_from_query) loop.match_from_query = rigid_part(*closure->match_from_query);
+    loops.push_back(loop);
+  }
+  return loops;
+}
+
+std::vector<evaluate::Match> as_matches(const std::vector<report::ScoredPair>& pairs) {
+  std::vector<evaluate::Match> matches;
+  for (const auto& pair : pairs) {
+    matches.push_back(
+        {static_cast<int>(pair.query.index()), static_cast<int>(pair.match.index()), pair.score});
+  }
+  return matches;
+}
+
+std::string percent(int part, int whole) {
+  return fmt::format("{} of {} ({:.1f} %)", part, whole, whole > 0 ? 100.0 * part / whole : 0.0);
+}
+
+}  // namespace
+
+SlamFindings findings_of(const report::RunRecord& record) {
+  return {static_cast<int>(record.frames.size()), report::measured_trajectory(record.frames),
+          record.odometry, static_cast<int>(report::final_rows(record.ledger).size()),
+          accepted_loops(record)};
+}
+
+SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth) {
+  SlamEvaluation evaluation;
+  evaluation.num_frames = findings.num_frames;
+  evaluation.num_measured = static_cast<int>(findings.trajectory.size());
+  evaluation.ate = evaluate::ate(truth.trajectory, findings.trajectory, evaluate::Alignment::kSe3);
+  evaluation.odometry_ate =
+      evaluate::ate(truth.trajectory, findings.odometry, evaluate::Alignment::kSe3);
+  evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory);
+  evaluation.num_candidates = findings.num_candidates;
+  evaluation.loops = evaluate::check_loops(findings.loops, truth);
+  return evaluation;
+}
+
+core::Trajectory aligned_truth(const SlamEvaluation& evaluation, const core::Truth& truth) {
+  if (!evaluation.ate) return {};
+  const core::Rigid3 estimate_from_truth = inverse(rigid_part(evaluation.ate->truth_from_estimate));
+  core::Trajectory aligned = truth.trajectory;
+  for (auto& pose : aligned) pose.world_from_camera = estimate_from_truth * pose.world_from_camera;
+  return aligned;
+}
+
+RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
+                                           const core::Truth& truth) {
+  RecognitionEvaluation evaluation;
+  evaluation.num_candidates = findings.num_candidates;
+  evaluation.num_accepted = static_cast<int>(findings.accepted.size());
+  if (truth.places) {
+    evaluation.curve = evaluate::precision_recall(*truth.places, as_matches(findings.matches),
+                                                  findings.window_frames);
+    evaluation.accepted = evaluate::count_accepted(*truth.places, as_matches(findings.accepted),
+                                                   findings.window_frames);
+  }
+  return evaluation;
+}
+
+std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
+  std::vector<Figure> figures = {
+      {"frames with a measured pose", percent(evaluation.num_measured, evaluation.num_frames)}};
+  if (const auto& ate = evaluation.ate) {
+    figures.push_back(
+        {"ATE RMSE (median, max)",
+         fmt::format("{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m)});
+  }
+  if (const auto& ate = evaluation.odometry_ate) {
+    figures.push_back({"ATE RMSE before loop closing", fmt::format("{:.4f} m", ate->rmse_m)});
+  }
+  if (const auto& rpe = evaluation.rpe) {
+    figures.push_back(
+        {"rotational error over 1 s, median (RMSE)",
+         fmt::format("{:.2f} degrees ({:.2f})", rpe->rotation_median_deg, rpe->rotation_rmse_deg)});
+    figures.push_back(
+        {"translational error over 1 s, median (RMSE)",
+         fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
+  }
+  const auto& loops = evaluation.loops;
+  figures.push_back({"candidates judged", std::to_string(evaluation.num_candidates)});
+  figures.push_back(
+      {"loops accepted: right / wrong / unknown",
+       fmt::format("{} / {} / {}", loops.num_right, loops.num_wrong, loops.num_unknown)});
+  return figures;
+}
+
+std::vector<Figure> figures_of(const RecognitionEvaluation& evaluation) {
+  std::vector<Figure> figures = {{"candidates judged", std::to_string(evaluation.num_candidates)}};
+  if (const auto& counts = evaluation.accepted) {
+    figures.push_back(
+        {"accepted: right / wrong / near",
+         fmt::format("{} / {} / {}", counts->num_right, counts->num_wrong, counts->num_near)});
+  } else {
+    figures.push_back({"accepted", std::to_string(evaluation.num_accepted)});
+  }
+  if (const auto& curve = evaluation.curve) {
+    figures.push_back({"queries, of these with a loop",
+                       fmt::format("{}, {}", curve->num_queries, curve->num_with_loop)});
+    figures.push_back({"AUC", fmt::format("{:.4f}", curve->auc)});
+    figures.push_back(
+        {"recall at 100 % precision", fmt::format("{:.4f}", curve->recall_at_full_precision)});
+    figures.push_back({"precision at recall .35, .70",
+                       fmt::format("{:.4f}, {:.4f}", curve->precision_at_recall_35,
+                                   curve->precision_at_recall_70)});
+  }
+  return figures;
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <samewhere/core/truth.hpp>
+#include <samewhere/evaluate/loop_check.hpp>
+#include <samewhere/evaluate/precision_recall.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
+#include <samewhere/report/loops.hpp>
+#include <samewhere/report/record.hpp>
+
+namespace samewhere::pipeline {
+
+// What SLAM says, as far as it can be compared with a truth.
+struct SlamFindings {
+  int num_frames = 0;
+  core::Trajectory trajectory;  // measured poses only
+  core::Trajectory odometry;    // before any correction
+  int num_candidates = 0;
+  std::vector<evaluate::AcceptedLoop> loops;
+};
+
+SlamFindings findings_of(const report::RunRecord& record);
+
+// How good a SLAM run is. Parts without a truth are absent.
+struct SlamEvaluation {
+  int num_frames = 0;
+  int num_measured = 0;
+  std::optional<evaluate::AteResult> ate;
+  std::optional<evaluate::AteResult> odometry_ate;
+  std::optional<evaluate::RpeResult> rpe;  // over 1 s
+  int num_candidates = 0;
+  evaluate::LoopCheck loops;
+};
+
+SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth);
+
+// The truth moved into the world of the estimate, to be drawn with it; empty if they cannot be
+// aligned.
+core::Trajectory aligned_truth(const SlamEvaluation& evaluation, const core::Truth& truth);
+
+// What recognition alone says.
+struct RecognitionFindings {
+  int num_candidates = 0;
+  std::vector<report::ScoredPair> matches;   // the best of each query
+  std::vector<report::ScoredPair> accepted;  // of these
+  int window_frames = 0;                     // as retrieval used it
+};
+
+// How good it is.
+struct RecognitionEvaluation {
+  int num_candidates = 0;
+  int num_accepted = 0;
+  std::optional<evaluate::PrecisionRecall> curve;    // of the scores of all matches
+  std::optional<evaluate::AcceptedCounts> accepted;  // at the shipped threshold
+};
+
+// A run that was cut short is scored as far as it went: queries that were never asked count as
+// missed.
+RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
+                                           const core::Truth& truth);
+
+// As shown to a person.
+std::vector<report::Figure> figures_of(const SlamEvaluation& evaluation);
+std::vector<report::Figure> figures_of(const RecognitionEvaluation& evaluation);
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,62 @@
+#include <samewhere/pipeline/loop_detector.hpp>
+
+namespace samewhere::pipeline {
+
+LoopDetector::LoopDetector(const Config& config, core::Timings& timings)
+    : settings_{config.verify, config.features, config.optimize,
+                static_cast<std::uint64_t>(config.seed)},
+      timings_(timings),
+      describer_(describe::make_describer(config.describe)),
+      retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)) {}
+
+std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const features::View& view,
+                                                const MeasureOdometry& measure_odometry) {
+  core::Descriptor descriptor;
+  {
+    const core::ScopedTimer timer(timings_, "describe");
+    descriptor = describer_->describe(view.frame, image);
+  }
+  std::vector<core::Candidate> candidates;
+  {
+    const core::ScopedTimer timer(timings_, "retrieve");
+    candidates = retriever_.query(descriptor);
+    retriever_.add(descriptor);
+  }
+  const core::ScopedTimer timer(timings_, "verify");
+  std::vector<core::LedgerRow> rows;
+  for (auto& candidate : candidates) {
+    candidate.id = core::CandidateId(num_candidates_++);
+    rows.push_back({candidate, judge(candidate, view, measure_odometry)});
+  }
+  for (const auto& row : rows) {
+    if (core::is_loop(row.verdict)) history_.last_loop_query = view.frame;
+  }
+  views_.emplace(view.frame, view);
+  return rows;
+}
+
+core::Verdict LoopDetector::judge(const core::Candidate& candidate, const features::View& view,
+                                  const MeasureOdometry& measure_odometry) {
+  core::Evidence evidence{.similarity = candidate.similarity};
+  if (auto refused = verify::refuse_early(candidate, evidence, history_, settings_.verify))
+    return *refused;
+  evidence.geometry =
+      verify::measure_geometry(candidate, view, views_.at(candidate.match), settings_);
+  if (evidence.geometry->match_from_query) {
+    evidence.odometry = measure_odometry(candidate, *evidence.geometry->match_from_query);
+  }
+  return verify::decide(candidate, evidence, history_, settings_.verify);
+}
+
+const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
+                                     const verify::Config& config) {
+  const core::LedgerRow* best = nullptr;
+  for (const auto& row : rows) {
+    const double score = verify::score(core::evidence_of(row.verdict), config);
+    if (best == nullptr || score > verify::score(core::evidence_of(best->verdict), config))
+      best = &row;
+  }
+  return best;
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <samewhere/core/ledger.hpp>
+#include <samewhere/core/timing.hpp>
+#include <samewhere/describe/describer.hpp>
+#include <samewhere/features/features.hpp>
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/retrieve/retriever.hpp>
+#include <samewhere/verify/decide.hpp>
+#include <samewhere/verify/measure.hpp>
+
+namespace samewhere::pipeline {
+
+// What odometry says of a relative pose that geometry found; nothing where there is no odometry.
+using MeasureOdometry = std::function<std::optional<core::OdometryEvidence>(
+    const core::Candidate& candidate, const core::Sim3& match_from_query)>;
+
+// Have I been here before? Describe the view, retrieve those that look alike, verify each one.
+class LoopDetector {
+ public:
+  // `timings` outlives the detector.
+  LoopDetector(const Config& config, core::Timings& timings);
+
+  // The judged candidates of this view, most similar first; the view is remembered for later ones.
+  // Frames ascend.
+  std::vector<core::LedgerRow> look(const cv::Mat& image, const features::View& view,
+                                    const MeasureOdometry& measure_odometry);
+
+ private:
+  core::Verdict judge(const core::Candidate& candidate, const features::View& view,
+                      const MeasureOdometry& measure_odometry);
+
+  verify::MeasureSettings settings_;
+  core::Timings& timings_;
+  std::unique_ptr<describe::Describer> describer_;
+  retrieve::Retriever retriever_;
+  verify::History history_;
+  std::map<core::FrameId, features::View> views_;
+  std::uint64_t num_candidates_ = 0;
+};
+
+// The candidate of a query that ranks first (verify::score), of equals the more similar. Nothing of
+// no rows.
+const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
+                                     const verify::Config& config);
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,36 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/input/open.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/twin/twin.hpp>
+
+namespace samewhere::pipeline {
+
+std::unique_ptr<core::Source> open_source(const Config& config) {
+  return twin::is_twin_spec(config.source) ? twin::open_twin(config.source, config.twin)
+                                           : input::open_source(config.source, config.input);
+}
+
+void require_slam_input(const core::SourceInfo& info, const Config& config) {
+  constexpr const char* kOtherwise = "(`samewhere loops` works without)";
+  if (!info.is_calibrated) {
+    throw core::InputError(fmt::format(
+        "{}: no camera file, which `samewhere run` needs; expected camera.txt beside the "
+        "images or --set input.camera=FILE {}",
+        config.source, kOtherwise));
+  }
+  if (!info.has_depth) {
+    throw core::InputError(fmt::format("{}: no depth images, which `samewhere run` needs today {}",
+                                       config.source, kOtherwise));
+  }
+}
+
+std::string absolute_source(const std::string& source) {
+  if (twin::is_twin_spec(source)) return source;
+  return std::filesystem::absolute(source).lexically_normal().string();
+}
+
+}  // namespace samewhere::pipeline

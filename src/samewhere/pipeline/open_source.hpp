@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <samewhere/core/source.hpp>
+#include <samewhere/pipeline/config.hpp>
+
+namespace samewhere::pipeline {
+
+// A recording or a twin building, by what config.source says. Throws InputError.
+std::unique_ptr<core::Source> open_source(const Config& config);
+
+// Throws InputError if the source lacks the depth or the camera that SLAM needs.
+void require_slam_input(const core::SourceInfo& info, const Config& config);
+
+// `source` such that it means the same from any folder: an absolute path; a twin's name stays as it
+// is.
+std::string absolute_source(const std::string& source);
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,55 @@
+#include <iterator>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <samewhere/report/frames.hpp>
+
+namespace samewhere::report {
+namespace {
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of("\",\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
+  if (!world_from_camera) return ",,,,,,";
+  const Eigen::Vector3d& t = world_from_camera->translation;
+  const Eigen::Quaterniond& q = world_from_camera->rotation;
+  return fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}", t.x(), t.y(), t.z(), q.x(),
+                     q.y(), q.z(), q.w());
+}
+
+}  // namespace
+
+core::Trajectory measured_trajectory(const std::vector<FrameRecord>& frames) {
+  core::Trajectory trajectory;
+  for (const FrameRecord& frame : frames)
+    if (frame.world_from_camera)
+      trajectory.push_back({frame.pose.stamp_s, *frame.world_from_camera});
+  return trajectory;
+}
+
+std::string frames_csv(const std::vector<FrameRecord>& frames) {
+  std::string text =
+      "index,stamp_s,name,status,is_measured,num_inliers,reference_keyframe,tx,ty,tz,qx,qy,qz,qw\n";
+  for (const FrameRecord& frame : frames) {
+    const core::FramePose& pose = frame.pose;
+    const std::string keyframe = pose.reference_keyframe.is_valid()
+                                     ? std::to_string(pose.reference_keyframe.index())
+                                     : std::string();
+    fmt::format_to(std::back_inserter(text), "{},{:.6f},{},{},{},{},{},{}\n", pose.frame.index(),
+                   pose.stamp_s, csv_field(frame.name), core::name_of(pose.status),
+                   frame.world_from_camera ? 1 : 0, pose.num_inliers, keyframe,
+                   pose_fields(frame.world_from_camera));
+  }
+  return text;
+}
+
+}  // namespace samewhere::report

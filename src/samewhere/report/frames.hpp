@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <samewhere/core/truth.hpp>
+#include <samewhere/report/record.hpp>
+
+namespace samewhere::report {
+
+// The frames whose pose was measured, after all corrections.
+core::Trajectory measured_trajectory(const std::vector<FrameRecord>& frames);
+
+// Every frame, one line each: index, stamp, name, status, whether the pose was measured, inliers,
+// reference keyframe, and world_from_camera (metres, quaternion; empty if not measured). RFC 4180.
+std::string frames_csv(const std::vector<FrameRecord>& frames);
+
+}  // namespace samewhere::report

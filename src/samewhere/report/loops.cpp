@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/report/funnel.hpp>
+#include <samewhere/report/loops.hpp>
+
+namespace samewhere::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add_score(Json& scores, const char* name, double value) {
+  if (std::isfinite(value)) scores[name] = value;
+}
+
+Json scores_of(const core::Verdict& verdict) {
+  const core::Evidence& evidence = core::evidence_of(verdict);
+  Json scores = Json::object();
+  add_score(scores, "similarity", evidence.similarity);
+  if (evidence.geometry) {
+    scores["num_matches"] = evidence.geometry->num_matches;
+    scores["num_inliers"] = evidence.geometry->num_inliers;
+    add_score(scores, "inlier_ratio", evidence.geometry->inlier_ratio);
+    add_score(scores, "spread_ratio", evidence.geometry->spread_ratio);
+    add_score(scores, "reprojection_rmse_px", evidence.geometry->reprojection_rmse_px);
+  }
+  if (evidence.odometry) {
+    add_score(scores, "correction_m", evidence.odometry->correction_m);
+    add_score(scores, "correction_rad", evidence.odometry->correction_rad);
+    add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
+  }
+  const auto* loop = std::get_if<core::LoopClosure>(&verdict);
+  if (loop != nullptr && loop->scale_is_free && loop->match_from_query)
+    add_score(scores, "scale", loop->match_from_query->scale);
+  return scores;
+}
+
+Json pose_of(const core::Verdict& verdict) {
+  const std::optional<core::Sim3> match_from_query = match_from_query_of(verdict);
+  if (!match_from_query) return nullptr;
+  const Eigen::Vector3d& t = match_from_query->translation;
+  const Eigen::Quaterniond& q = match_from_query->rotation;
+  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+Json entry_of(const core::LedgerRow& row) {
+  return {{"query", row.candidate.query.index()},    {"match", row.candidate.match.index()},
+          {"verdict", core::name_of(row.verdict)},   {"stage", core::stage_of(row.verdict)},
+          {"reason", core::reason_of(row.verdict)},  {"scores", scores_of(row.verdict)},
+          {"match_from_query", pose_of(row.verdict)}};
+}
+
+}  // namespace
+
+std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict) {
+  std::optional<core::Sim3> match_from_query;
+  if (const auto* loop = std::get_if<core::LoopClosure>(&verdict))
+    match_from_query = loop->match_from_query;
+  else if (core::evidence_of(verdict).geometry)
+    match_from_query = core::evidence_of(verdict).geometry->match_from_query;
+  if (match_from_query && !core::is_finite(core::rigid_part(*match_from_query)))
+    return std::nullopt;
+  return match_from_query;
+}
+
+std::string loops_json(const core::Ledger& ledger) {
+  Json candidates = Json::array();
+  for (const core::LedgerRow* row : final_rows(ledger)) candidates.push_back(entry_of(*row));
+  const Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
+  // a name that is no UTF-8 must not cost the whole file
+  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger) {
+  std::vector<ScoredPair> pairs;
+  for (const core::LedgerRow* row : final_rows(ledger))
+    if (core::is_loop(row->verdict))
+      pairs.push_back({row->candidate.query, row->candidate.match, row->candidate.similarity});
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const ScoredPair& a, const ScoredPair& b) { return a.query < b.query; });
+  return pairs;
+}
+
+std::string pairs_text(const std::vector<ScoredPair>& pairs) {
+  std::string text;
+  for (const ScoredPair& pair : pairs) {
+    core::require(std::isfinite(pair.score), "the score of a match is a finite number");
+    fmt::format_to(std::back_inserter(text), "{} {} {}\n", pair.query.index(), pair.match.index(),
+                   pair.score);
+  }
+  return text;
+}
+
+}  // namespace samewhere::report

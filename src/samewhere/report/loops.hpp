@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <samewhere/core/ledger.hpp>
+
+namespace samewhere::report {
+
+// The relative pose a row speaks of: the loop's, or for a refused candidate the one geometry found.
+// Nothing without a pose or where it is not finite.
+std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict);
+
+// loops.json, version 1: for each candidate its last verdict with stage, reason, every score of its
+// Evidence by name, and match_from_query as [tx, ty, tz, qx, qy, qz, qw] or null. Scores that are
+// not finite are left out.
+std::string loops_json(const core::Ledger& ledger);
+
+// One line of matches.txt or accepted.txt.
+struct ScoredPair {
+  core::FrameId query;
+  core::FrameId match;
+  double score = 0.0;  // finite
+};
+
+// The loops of a ledger, scored by similarity, in the order of the queries.
+std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger);
+
+// Lines "query match score"; the score has all digits it needs to be read back as it was.
+std::string pairs_text(const std::vector<ScoredPair>& pairs);
+
+}  // namespace samewhere::report

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <samewhere/core/frame_pose.hpp>
+#include <samewhere/core/ids.hpp>
+#include <samewhere/core/ledger.hpp>
+#include <samewhere/core/rigid3.hpp>
+#include <samewhere/core/timing.hpp>
+#include <samewhere/core/truth.hpp>
+
+namespace samewhere::report {
+
+struct FrameRecord {
+  core::FramePose pose;
+  std::string name;  // how the source calls it
+  // Of camera 0, after all corrections; nothing if the pose was not measured.
+  std::optional<core::Rigid3> world_from_camera;
+};
+
+struct ColouredPoint {
+  Eigen::Vector3f in_world = Eigen::Vector3f::Zero();
+  std::array<std::uint8_t, 3> rgb{};
+};
+
+// One measured figure as it is shown to a person.
+struct Figure {
+  std::string name;   // "ATE RMSE"
+  std::string value;  // "0.021 m"
+};
+
+// A finished run, as plain data.
+struct RunRecord {
+  std::string title;
+  std::string source;               // what the user asked for: a folder, a file, twin:...
+  std::vector<FrameRecord> frames;  // in the order of the source
+  core::Ledger ledger;
+  core::Trajectory odometry;          // before any correction; may be empty
+  core::Trajectory truth;             // aligned into the world of the estimate; may be empty
+  std::vector<ColouredPoint> points;  // of the map
+  std::map<core::FrameId, std::string> thumbnails;  // JPEG (jpeg.hpp), of frames the ledger speaks of
+  std::vector<Figure> figures;
+  core::Timings timings;  // stage kWholeFrameStage is what frames per second are counted by
+  std::string config_yaml;
+  bool is_interrupted = false;
+};
+
+// The name under which the pipeline times all work on one frame.
+inline constexpr const char* kWholeFrameStage = "frame";
+
+}  // namespace samewhere::report

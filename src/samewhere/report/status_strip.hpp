@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <samewhere/report/record.hpp>
+
+namespace samewhere::report {
+
+// HTML: a timeline of the frames coloured by tracking state, and how many frames were in each.
+// Empty without frames.
+std::string status_strip(const std::vector<FrameRecord>& frames);
+
+}  // namespace samewhere::report

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <samewhere/core/config.hpp>
+
+namespace samewhere::retrieve {
+
+enum class Search { kExact, kSampled };
+enum class PerDraw { kTop3, kNearest };
+
+struct Config {
+  Search search = Search::kExact;
+  int num_candidates = 3;
+  double window_s = 5.0;
+  int window_frames = -1;
+  int place_frames = 0;
+
+  // sampled search only, section 3.1.4 of the published method
+  int num_draws = 50;           // L
+  double min_similarity = 0.6;  // cosine, eq. (7)
+  PerDraw per_draw = PerDraw::kTop3;
+  int group_size = 100;
+  int queue_size = 10;
+};
+
+inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("search", config.search,
+        {.help = "compare every stored view, or a random sample of them (the published method)",
+         .choices = {"exact", "sampled"}});
+  visit("num_candidates", config.num_candidates,
+        {.help = "views handed to verification, the best ones", .min = 1, .max = 1000});
+  visit("window_s", config.window_s,
+        {.help = "a view this old or younger is no candidate, by the source's frame rate",
+         .min = 0.0,
+         .max = 1e6});
+  visit("window_frames", config.window_frames,
+        {.help = "the same in frames, instead of window_s; -1: window_s counts", .min = -1});
+  visit("place_frames", config.place_frames,
+        {.help = "of views closer than this many frames only the best is a candidate; 0: all are",
+         .min = 0});
+  visit("num_draws", config.num_draws,
+        {.help = "sampled search: L, queues drawn per query", .min = 1, .max = 1000000});
+  visit(
+      "min_similarity", config.min_similarity,
+      {.help = "sampled search: cosine that a view must exceed, eq. (7)", .min = -1.0, .max = 1.0});
+  visit("per_draw", config.per_draw,
+        {.help = "sampled search: kept of a drawn queue: its three best (Table 1), or the nearest "
+                 "by eq. (5)-(6)",
+         .choices = {"top3", "nearest"}});
+  visit(
+      "group_size", config.group_size,
+      {.help = "views in a group of the store; a multiple of queue_size", .min = 1, .max = 100000});
+  visit("queue_size", config.queue_size,
+        {.help = "consecutive views in a queue of the store", .min = 1, .max = 100000});
+}
+
+}  // namespace samewhere::retrieve

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <samewhere/core/config.hpp>
+
+namespace samewhere::twin {
+
+// Settings of the rendered buildings. Which building is said by the source (spec.hpp).
+struct Config {
+  bool ideal_depth = false;  // exact depth at every pixel instead of the sensor model
+  int num_frames = 0;        // render only the first frames of the walk; 0 = all
+};
+
+inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("ideal_depth", config.ideal_depth, {.help = "exact depth at every pixel, no sensor model"});
+  visit("num_frames", config.num_frames,
+        {.help = "render only the first frames of the walk, 0 = all", .min = 0});
+}
+
+}  // namespace samewhere::twin

@@ -1,0 +1,105 @@
+#include <array>
+#include <cmath>
+
+#include <samewhere/twin/noise.hpp>
+#include <samewhere/twin/photograph.hpp>
+
+namespace samewhere::twin {
+namespace {
+
+// From linear light to the 8 bits of a picture.
+class ToneCurve {
+ public:
+  ToneCurve() {
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      const float light = static_cast<float>(i) / kStepsPerUnit;
+      // linear up to the shoulder, then ever flatter: lamps are white, not cut out
+      const float rolled =
+          light < kShoulder
+              ? light
+              : kShoulder + (1.0F - kShoulder) *
+                                (1.0F - std::exp((kShoulder - light) / (1.0F - kShoulder)));
+      levels_[i] = 255.0F * std::pow(rolled, 1.0F / 2.2F);
+    }
+  }
+
+  float level(float light) const {
+    const float step = std::min(light * kStepsPerUnit, static_cast<float>(levels_.size() - 1));
+    return levels_[static_cast<std::size_t>(step)];
+  }
+
+ private:
+  static constexpr float kShoulder = 0.7F;
+  static constexpr float kStepsPerUnit = 4096.0F;
+  std::array<float, 16384> levels_{};
+};
+
+constexpr float kSide = 0.0625F;
+constexpr float kMiddle = 1.0F - 2.0F * kSide;
+
+// The lens: a bell three pixels wide, [1 14 1] / 16 along rows and columns.
+cv::Mat blurred(const cv::Mat& radiance) {
+  cv::Mat along_rows = radiance.clone();
+  for (int y = 0; y < radiance.rows; ++y) {
+    const auto* const from = radiance.ptr<cv::Vec3f>(y);
+    auto* const to = along_rows.ptr<cv::Vec3f>(y);
+    for (int x = 1; x + 1 < radiance.cols; ++x) {
+      to[x] = kSide * (from[x - 1] + from[x + 1]) + kMiddle * from[x];
+    }
+  }
+  cv::Mat result = along_rows.clone();
+  for (int y = 1; y + 1 < radiance.rows; ++y) {
+    const auto* const above = along_rows.ptr<cv::Vec3f>(y - 1);
+    const auto* const here = along_rows.ptr<cv::Vec3f>(y);
+    const auto* const below = along_rows.ptr<cv::Vec3f>(y + 1);
+    auto* const to = result.ptr<cv::Vec3f>(y);
+    for (int x = 0; x < radiance.cols; ++x) {
+      to[x] = kSide * (above[x] + below[x]) + kMiddle * here[x];
+    }
+  }
+  return result;
+}
+
+// Light that reaches a pixel over what reaches the middle.
+float vignette(float x_px, float y_px, const cv::Size& size) {
+  constexpr float kLossInCorner = 0.25F;
+  const float dx = 2.0F * x_px / static_cast<float>(size.width) - 1.0F;
+  const float dy = 2.0F * y_px / static_cast<float>(size.height) - 1.0F;
+  return 1.0F - kLossInCorner * 0.5F * (dx * dx + dy * dy);
+}
+
+std::uint8_t rounded(float level) {
+  return static_cast<std::uint8_t>(std::min(std::max(level, 0.0F), 255.0F) + 0.5F);
+}
+
+}  // namespace
+
+cv::Mat photograph(const cv::Mat& radiance, float gain, std::uint64_t seed) {
+  constexpr float kBrightnessNoise = 1.5F;  // grey levels
+  constexpr float kColourNoise = 1.2F;
+  static const ToneCurve kTone;
+  const cv::Mat projected = blurred(radiance);
+  cv::Mat picture(radiance.size(), CV_8UC3);
+  for (int y = 0; y < radiance.rows; ++y) {
+    const auto* const light = projected.ptr<cv::Vec3f>(y);
+    auto* const level = picture.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < radiance.cols; ++x) {
+      const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(radiance.cols) +
+                         static_cast<std::uint64_t>(x);
+      const float scale =
+          gain * vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
+      const std::uint64_t first = scramble(seed + 2 * pixel);
+      const std::uint64_t second = scramble(seed + 2 * pixel + 1);
+      const float common = kBrightnessNoise * nearly_gaussian(static_cast<std::uint32_t>(first));
+      const std::uint64_t parts[3] = {first >> 32, second, second >> 32};
+      for (int channel = 0; channel < 3; ++channel) {
+        const float noise =
+            common + kColourNoise * nearly_gaussian(static_cast<std::uint32_t>(parts[channel]));
+        level[x][channel] = rounded(kTone.level(scale * light[x][channel]) + noise);
+      }
+    }
+  }
+  return picture;
+}
+
+}  // namespace samewhere::twin

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <samewhere/twin/places.hpp>
+#include <samewhere/twin/twin.hpp>
+
+namespace samewhere::twin {
+namespace {
+
+using core::PlaceTruth;
+
+constexpr int kWindow_frames = 150;  // 10 s, as in the protocol
+
+class OfficeLoopPlaces : public testing::Test {
+ protected:
+  core::PlaceTruthMatrix places_ = *open_twin("twin:office-loop?seed=3", {})->truth().places;
+};
+
+bool has_loop(const core::PlaceTruthMatrix& places, int query) {
+  for (int match = 0; match < query - kWindow_frames; ++match) {
+    if (places.at(query, match) == PlaceTruth::kSame) return true;
+  }
+  return false;
+}
+
+TEST_F(OfficeLoopPlaces, EveryFrameIsTheSamePlaceAsItselfAndItsNeighbours) {
+  for (int i = 0; i < places_.num_frames; ++i) {
+    ASSERT_EQ(places_.at(i, i), PlaceTruth::kSame) << i;
+    if (i > 0) {
+      ASSERT_EQ(places_.at(i, i - 1), PlaceTruth::kSame) << i;
+    }
+  }
+}
+
+TEST_F(OfficeLoopPlaces, TheEndOfTheWalkHasLoopsToItsStartAndNothingElseHas) {
+  const int num_frames = places_.num_frames;
+  int num_loops = 0;
+  for (int i = 0; i < num_frames; ++i) num_loops += static_cast<int>(has_loop(places_, i));
+  EXPECT_GT(num_loops, 70);
+  EXPECT_LT(num_loops, 140);
+  for (int i = num_frames - 60; i < num_frames; ++i) EXPECT_TRUE(has_loop(places_, i)) << i;
+  for (int i = 0; i < 400; ++i) EXPECT_FALSE(has_loop(places_, i)) << i;
+}
+
+TEST_F(OfficeLoopPlaces, OppositeCorridorsAreDifferentPlaces) {
+  // frames 20 to 60 and 300 to 340 walk along the two long sides
+  for (int query = 300; query < 340; ++query) {
+    for (int match = 20; match < 60; ++match) {
+      ASSERT_EQ(places_.at(query, match), PlaceTruth::kDifferent) << query << ' ' << match;
+      ASSERT_EQ(places_.at(match, query), PlaceTruth::kDifferent) << query << ' ' << match;
+    }
+  }
+}
+
+core::Rigid3 looking_along_x(double x_m, double turned_rad) {
+  Eigen::Matrix3d world_from_camera;
+  world_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()));
+  return {turn * Eigen::Quaterniond(world_from_camera), {x_m, 0.0, 0.0}};
+}
+
+// A wide wall 2 m ahead, across x.
+Building one_wall() {
+  return Building({{.axis = 0,
+                    .plane_m = 2.0F,
+                    .facing = -1.0F,
+                    .low_m = {-50.0F, -50.0F},
+                    .high_m = {50.0F, 50.0F}}});
+}
+
+PlaceTruth places_of_two(const core::Rigid3& first, const core::Rigid3& second) {
+  const core::PinholeRadtan camera{.width_px = 640,
+                                   .height_px = 480,
+                                   .fx_px = 525.0,
+                                   .fy_px = 525.0,
+                                   .cx_px = 319.5,
+                                   .cy_px = 239.5};
+  return places_of({{0.0, first}, {1.0, second}}, one_wall(), camera).at(0, 1);
+}
+
+TEST(Places, FollowFromTheSharedSurface) {
+  // the picture is 62.7 degrees wide
+  EXPECT_EQ(places_of_two(looking_along_x(0.0, 0.0), looking_along_x(0.0, 0.2)), PlaceTruth::kSame);
+  EXPECT_EQ(places_of_two(looking_along_x(0.0, 0.0), looking_along_x(0.0, 0.85)),
+            PlaceTruth::kNear);
+  EXPECT_EQ(places_of_two(looking_along_x(0.0, 0.0), looking_along_x(0.0, 1.08)),
+            PlaceTruth::kDifferent);
+  // from twice as far, the near view is a quarter of the far one: seen whole one way only
+  EXPECT_EQ(places_of_two(looking_along_x(0.0, 0.0), looking_along_x(-2.0, 0.0)),
+            PlaceTruth::kNear);
+}
+
+TEST(Places, AWallBetweenHidesAPlace) {
+  // b stands behind the wall that a looks at, and looks the same way onto another one
+  auto surfaces = one_wall().rectangles;
+  surfaces.push_back(surfaces.front());
+  surfaces.back().plane_m = 5.0F;
+  const core::PinholeRadtan camera{.width_px = 640,
+                                   .height_px = 480,
+                                   .fx_px = 525.0,
+                                   .fy_px = 525.0,
+                                   .cx_px = 319.5,
+                                   .cy_px = 239.5};
+  const Building building(surfaces);
+  const auto places = places_of(
+      {{0.0, looking_along_x(0.0, 0.0)}, {1.0, looking_along_x(2.5, 0.0)}}, building, camera);
+  EXPECT_EQ(places.at(0, 1), PlaceTruth::kDifferent);
+}
+
+}  // namespace
+}  // namespace samewhere::twin

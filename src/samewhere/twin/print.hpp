@@ -1,0 +1,17 @@
+#pragma once
+
+#include <samewhere/twin/noise.hpp>
+#include <samewhere/twin/surface.hpp>
+
+namespace samewhere::twin {
+
+// What is printed on things; the point is measured from the lower left corner of the rectangle.
+
+// Room number with lines of names under it.
+Colour door_plate(const Rectangle& plate, const TexturePoint& point);
+// Heading, picture and lines of text in a layout and colours that follow from the pattern seed.
+Colour poster(const Rectangle& paper, const TexturePoint& point);
+// A white arrow and bars in a frame, as on signs for exits and extinguishers.
+Colour pictogram(const Rectangle& sign, const TexturePoint& point);
+
+}  // namespace samewhere::twin

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include <samewhere/core/rig.hpp>
+#include <samewhere/core/rigid3.hpp>
+#include <samewhere/twin/light.hpp>
+#include <samewhere/twin/ray_tree.hpp>
+#include <samewhere/twin/surface.hpp>
+
+namespace samewhere::twin {
+
+// Surfaces with what is needed to find them by rays.
+struct Building {
+  explicit Building(std::vector<Rectangle> surfaces)
+      : rectangles(std::move(surfaces)), tree(rectangles) {}
+
+  std::vector<Rectangle> rectangles;
+  RayTree tree;
+};
+
+// What a perfect camera sees; pictures of the camera's size.
+struct View {
+  cv::Mat radiance;   // CV_32FC3, linear, blue green red
+  cv::Mat depth_m;    // CV_32F, along the optical axis at the pixel's centre, exact
+  cv::Mat incidence;  // CV_32F, cosine between the ray and the surface's normal: 0 is grazing
+  cv::Mat surface;    // CV_32S, index of the rectangle, -1 if none
+};
+
+// Casts a ray through the centre of every pixel of the (distorted) picture. Textures are filtered
+// within a surface; where neighbouring pixels see different surfaces, more rays find out how much
+// of the pixel each of them covers.
+class Renderer {
+ public:
+  // The building must outlive the renderer. Computes the light on all surfaces: a fraction of a
+  // second for a floor.
+  Renderer(const Building& building, const core::Camera& camera);
+
+  View render(const core::Rigid3& world_from_camera) const;
+
+ private:
+  struct Eye;
+  struct Sample;
+
+  Sample sample(const Eye& eye, const Eigen::Vector3f& ray_in_camera) const;
+  void render_pixels(const Eye& eye, View& view) const;
+  void smooth_edges(const Eye& eye, View& view) const;
+  cv::Vec3f smooth_pixel(const Eye& eye, const View& view, const cv::Point& pixel) const;
+  Eigen::Vector3f ray(float x_px, float y_px) const;
+
+  const Building& building_;
+  SurfaceColours light_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  float pixel_rad_ = 0.0F;
+  // through the centres of the pixels and one more column and row: z = 1
+  std::vector<Eigen::Vector3f> rays_in_camera_;
+};
+
+}  // namespace samewhere::twin

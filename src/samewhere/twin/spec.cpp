@@ -1,0 +1,93 @@
+#include <charconv>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/twin/spec.hpp>
+
+namespace samewhere::twin {
+namespace {
+
+constexpr std::string_view kScheme = "twin:";
+constexpr std::string_view kPresets[] = {"office-loop"};
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t end = text.find(separator); end != std::string_view::npos;
+       end = text.find(separator)) {
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  parts.push_back(text);
+  return parts;
+}
+
+// One "key=value" of a spec, and the spec itself for the message.
+struct Setting {
+  const std::string& spec;
+  std::string_view key;
+  std::string_view value;
+};
+
+template <class T>
+T number(const Setting& setting, T min, T max, std::string_view expected) {
+  T parsed{};
+  const char* const last = setting.value.data() + setting.value.size();
+  const auto [end, error] = std::from_chars(setting.value.data(), last, parsed);
+  const bool is_whole = error == std::errc{} && end == last;
+  if (is_whole && parsed >= min && parsed <= max) return parsed;
+  throw core::InputError(
+      fmt::format("{}: {} = {} is not {}", setting.spec, setting.key, setting.value, expected));
+}
+
+void apply(const Setting& setting, Spec& spec) {
+  if (setting.key == "seed") {
+    spec.seed = number<std::uint64_t>(setting, 0, ~std::uint64_t{0}, "a whole number >= 0");
+  } else if (setting.key == "similarity") {
+    spec.similarity = number(setting, 0.0, 1.0, "a number in [0, 1]");
+  } else {
+    throw core::InputError(fmt::format("{}: unknown key {}; expected one of: seed, similarity",
+                                       setting.spec, setting.key));
+  }
+}
+
+void check_preset(const std::string& text, std::string_view preset) {
+  for (const auto& known : kPresets) {
+    if (preset == known) return;
+  }
+  throw core::InputError(fmt::format("{}: unknown preset {}; expected one of: {}", text, preset,
+                                     fmt::join(kPresets, ", ")));
+}
+
+}  // namespace
+
+bool is_twin_spec(std::string_view text) { return text.starts_with(kScheme); }
+
+Spec parse_spec(const std::string& text) {
+  if (!is_twin_spec(text)) {
+    throw core::InputError(text + ": expected twin:PRESET?key=value&key=value");
+  }
+  const std::string_view after_scheme = std::string_view(text).substr(kScheme.size());
+  const std::size_t question = after_scheme.find('?');
+  Spec spec{.preset = std::string(after_scheme.substr(0, question))};
+  check_preset(text, spec.preset);
+  if (question == std::string_view::npos) return spec;
+
+  std::vector<std::string_view> seen;
+  for (const auto& part : split(after_scheme.substr(question + 1), '&')) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string_view::npos) {
+      throw core::InputError(fmt::format("{}: expected key=value, found \"{}\"", text, part));
+    }
+    const Setting setting{text, part.substr(0, equals), part.substr(equals + 1)};
+    for (const auto& key : seen) {
+      if (key == setting.key) throw core::InputError(fmt::format("{}: {} given twice", text, key));
+    }
+    seen.push_back(setting.key);
+    apply(setting, spec);
+  }
+  return spec;
+}
+
+}  // namespace samewhere::twin

@@ -1,0 +1,121 @@
+// Each command does what its help says.
+
+#include <gtest/gtest.h>
+
+#include "program.hpp"
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::test {
+namespace {
+
+class Commands : public testing::Test {
+ protected:
+  Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
+  std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
+
+  input::TestFolder folder_;
+};
+
+TEST_F(Commands, HelpShowsAnExampleOfEach) {
+  EXPECT_EQ(run("--help").exit_code, 0);
+  for (const std::string command : {"run", "loops", "eval", "config"}) {
+    const Outcome help = run(command + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("Example"), std::string::npos) << command;
+    EXPECT_NE(help.out.find("samewhere " + command), std::string::npos) << command;
+  }
+  EXPECT_NE(run("--version").out.find("samewhere 0."), std::string::npos);
+}
+
+TEST_F(Commands, ConfigPrintsWhatConfigReads) {
+  const Outcome printed = run("config --profile paper --set verify.min_inliers=77");
+  ASSERT_EQ(printed.exit_code, 0);
+  EXPECT_NE(printed.out.find("min_inliers: 77"), std::string::npos);
+  core::write_file(path("mine.yaml"), printed.out);
+  const Outcome again = run("config --config " + quoted(path("mine.yaml")));
+  EXPECT_EQ(again.out, printed.out);
+}
+
+TEST_F(Commands, TheCommittedConfigFilesAreWhatTheProgramHas) {
+  const std::filesystem::path repository = SAMEWHERE_REPOSITORY;
+  EXPECT_EQ(run("config").out, core::read_file(repository / "configs/default.yaml"))
+      << "make it anew: samewhere config > configs/default.yaml";
+  const std::string table = core::read_file(repository / "docs/config.md");
+  EXPECT_NE(table.find(run("config --table").out), std::string::npos) << "make docs/config.md anew";
+}
+
+TEST_F(Commands, RunEvalAndASecondRunAgree) {
+  const std::string source = "'twin:office-loop?seed=2' --set twin.num_frames=12";
+  const Outcome first = run("run " + source + " --out " + quoted(path("a")));
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  for (const char* file : {"trajectory.tum", "odometry.tum", "frames.csv", "loops.json", "map.ply",
+                           "config.yaml", "timing.json", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(path("a") / file)) << file;
+  }
+  ASSERT_EQ(run("run " + source + " --out " + quoted(path("b"))).exit_code, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(path("a"))) {
+    const auto name = entry.path().filename();
+    if (name == "timing.json") continue;
+    EXPECT_EQ(core::read_file(entry.path()), core::read_file(path("b") / name)) << name;
+  }
+  const Outcome eval = run("eval " + quoted(path("a")));
+  EXPECT_EQ(eval.exit_code, 0) << eval.err;
+  const auto ate = eval.out.find("ATE RMSE");
+  ASSERT_NE(ate, std::string::npos) << eval.out;
+  const std::string line = eval.out.substr(ate, eval.out.find('\n', ate) - ate);
+  EXPECT_NE(first.out.find(line), std::string::npos)
+      << "the run printed another figure than " << line;
+}
+
+TEST_F(Commands, LoopsWritesTheFilesThatOthersRead) {
+  const Outcome outcome =
+      run("loops 'twin:office-loop?seed=2' --set twin.num_frames=8 --set retrieve.window_frames=2 "
+          "--out " +
+          quoted(path("loops")));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string matches = core::read_file(path("loops") / "matches.txt");
+  EXPECT_EQ(std::count(matches.begin(), matches.end(), '\n'), 5) << "queries 3 to 7\n" << matches;
+  EXPECT_TRUE(std::filesystem::exists(path("loops") / "accepted.txt"));
+  EXPECT_TRUE(std::filesystem::exists(path("loops") / "loops.json"));
+  EXPECT_NE(outcome.out.find("AUC"), std::string::npos);
+  EXPECT_EQ(run("eval " + quoted(path("loops"))).exit_code, 0);
+}
+
+TEST_F(Commands, WithoutOutNothingIsOverwritten) {
+  const std::string in_scratch =
+      "cd " + quoted(folder_.root()) + " && '" + SAMEWHERE_PROGRAM +
+      "' loops 'twin:office-loop?seed=2' --set twin.num_frames=2 >/dev/null 2>&1";
+  ASSERT_EQ(std::system(in_scratch.c_str()), 0);
+  ASSERT_EQ(std::system(in_scratch.c_str()), 0);
+  int num_folders = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path("runs")))
+    ++num_folders;
+  EXPECT_EQ(num_folders, 2);
+}
+
+TEST_F(Commands, CtrlCFinishesTheFiles) {
+  const std::string interrupted = "timeout -s INT 4 '" + std::string(SAMEWHERE_PROGRAM) +
+                                  "' run 'twin:office-loop?seed=2' --out " + quoted(path("cut")) +
+                                  " >/dev/null 2>&1";
+  const int status = std::system(interrupted.c_str());
+  // `timeout` says 124 when it had to end the program, whatever the program then answered
+  ASSERT_EQ(WEXITSTATUS(status), 124) << "the run was over before it could be interrupted";
+  for (const char* file :
+       {"trajectory.tum", "frames.csv", "loops.json", "map.ply", "config.yaml", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(path("cut") / file)) << file;
+  }
+  const Outcome eval = run("eval " + quoted(path("cut")));
+  EXPECT_EQ(eval.exit_code, 0) << eval.err;
+}
+
+TEST_F(Commands, CtrlCIsExitCode130) {
+  const std::string script = "'" + std::string(SAMEWHERE_PROGRAM) +
+                             "' run 'twin:office-loop?seed=2' --out " + quoted(path("cut")) +
+                             " >/dev/null 2>&1 & pid=$!; sleep 4; kill -INT $pid; wait $pid";
+  // job control off: a background process of a plain shell would ignore SIGINT
+  const int status = std::system(("bash -c \"set -m; " + script + "\"").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+}
+
+}  // namespace
+}  // namespace samewhere::test

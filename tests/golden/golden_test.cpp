@@ -1,0 +1,93 @@
+// What the project promises on real recordings, with the shipped config. The bounds are goals, not
+// yesterday's figures.
+
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <opencv2/core/utility.hpp>
+
+#include <samewhere/pipeline/figures.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/run.hpp>
+
+namespace samewhere {
+namespace {
+
+class Golden : public testing::Test {
+ protected:
+  void SetUp() override {
+    cv::setNumThreads(1);
+    const char* data = std::getenv("SAMEWHERE_DATA");
+    if (data == nullptr) GTEST_SKIP() << "SAMEWHERE_DATA is not set";
+    data_ = data;
+  }
+
+  pipeline::Config config_of(const std::string& name,
+                             const std::vector<std::string>& assignments = {}) const {
+    pipeline::Config config = pipeline::load_config("default", "", assignments);
+    config.source = data_ + "/" + name;
+    return config;
+  }
+
+  pipeline::SlamEvaluation slam(const std::string& name) const {
+    const pipeline::Config config = config_of(name);
+    auto source = pipeline::open_source(config);
+    const core::Truth truth = source->truth();
+    return evaluate_slam(findings_of(run_slam(std::move(source), config).record), truth);
+  }
+
+  // Recognition by HOG and exact search alone, without geometry.
+  evaluate::PrecisionRecall hog(const std::string& name, int window_frames) const {
+    const pipeline::Config config =
+        config_of(name, {"verify.rank_by=similarity", "verify.require_geometry=false",
+                         "verify.min_similarity=1",
+                         "retrieve.window_frames=" + std::to_string(window_frames)});
+    auto source = pipeline::open_source(config);
+    const core::Truth truth = source->truth();
+    const pipeline::RunOutcome outcome = run_recognition(std::move(source), config);
+    return *evaluate_recognition({0, outcome.matches, outcome.accepted, window_frames}, truth)
+                .curve;
+  }
+
+  std::string data_;
+};
+
+TEST_F(Golden, RedkitchenIsTrackedToTheEndAndClosesOnlyRightLoops) {
+  const auto run = slam("redkitchen");
+  EXPECT_EQ(run.num_measured, 1000);
+  EXPECT_LT(run.ate->rmse_m, 0.06);
+  EXPECT_GE(run.loops.num_right, 5);
+  EXPECT_EQ(run.loops.num_wrong, 0);
+}
+
+TEST_F(Golden, HololensComesBackToWhereItWas) {
+  const auto run = slam("hololens");
+  EXPECT_EQ(run.num_measured, 373);
+  EXPECT_LT(run.ate->rmse_m, 0.20);
+  EXPECT_GE(run.loops.num_right, 1);
+  EXPECT_EQ(run.loops.num_wrong, 0);
+}
+
+TEST_F(Golden, AlmostPureRotationIsTrackedToTheEnd) {
+  const auto run = slam("tum_fr1_rpy");
+  EXPECT_EQ(run.num_measured, 200);
+  EXPECT_LT(run.ate->rmse_m, 0.04);
+  EXPECT_LT(run.rpe->rotation_median_deg, 3.0);
+  EXPECT_EQ(run.loops.num_wrong, 0);
+}
+
+// Figures of the better published HOG row, docs/evaluation.md.
+TEST_F(Golden, HogIsNotBelowThePeersHog) {
+  const auto corridor = hog("rtabmap_corridor", 19);
+  EXPECT_GE(corridor.auc, 0.510);
+  EXPECT_GE(corridor.recall_at_full_precision, 0.205);
+  const auto kitchen = hog("redkitchen", 149);
+  EXPECT_GE(kitchen.auc, 0.687);
+  EXPECT_GE(kitchen.recall_at_full_precision, 0.347);
+  const auto hololens = hog("hololens", 60);
+  EXPECT_GE(hololens.auc, 0.221);
+  EXPECT_GE(hololens.recall_at_full_precision, 0.111);
+}
+
+}  // namespace
+}  // namespace samewhere
