@@ -48,9 +48,8 @@ std::string reason_of(const Verdict& verdict) {
   if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return ambiguous->reason;
   const Evidence& evidence = evidence_of(verdict);
   if (!evidence.geometry) return fmt::format("similarity {:.3f}", evidence.similarity);
-  return fmt::format("{} of {} matches agree on one geometry, reprojection error {:.2f} px",
-                     evidence.geometry->num_inliers, evidence.geometry->num_matches,
-                     evidence.geometry->reprojection_rmse_px);
+  return fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
+                     evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
 }
 
 }  // namespace samewhere::core

@@ -34,8 +34,8 @@ std::string view(const RunRecord& record, core::FrameId frame) {
 std::string scores_of(const core::Evidence& evidence) {
   std::string text = fmt::format("similarity {:.2f}", evidence.similarity);
   if (evidence.geometry)
-    fmt::format_to(std::back_inserter(text), " · inliers {} of {}", evidence.geometry->num_inliers,
-                   evidence.geometry->num_matches);
+    fmt::format_to(std::back_inserter(text), " · {} matches · {} inliers",
+                   evidence.geometry->num_matches, evidence.geometry->num_inliers);
   return text;
 }
 

@@ -179,13 +179,15 @@ void Furnisher::add_notice_board(const Place& place) {
   Mounted frame = board;
   frame.out_m.y() = 0.025F;
   mount_frame(place, frame, 0.03F, fresh(Finish::kWood, kBeech, kBeech));
-  constexpr int kColumns = 4;
-  constexpr int kSlots = 8;
-  for (int slot = 0; slot < kSlots; ++slot) {
+  constexpr int kNumColumns = 4;
+  constexpr int kNumSlots = 8;
+  for (int slot = 0; slot < kNumSlots; ++slot) {
+    const int column = slot % kNumColumns;
+    const int row = slot / kNumColumns;
     const bool is_empty = random_.uniform() < 0.5 * (1.0 - similarity_);
     const auto shift_m = static_cast<float>((1.0 - similarity_) * random_.uniform(-0.05, 0.05));
-    const Eigen::Vector2f middle_m(-0.41F + 0.27F * static_cast<float>(slot % kColumns) + shift_m,
-                                   1.32F + 0.4F * static_cast<float>(slot / kColumns) - shift_m);
+    const Eigen::Vector2f middle_m(-0.41F + 0.27F * static_cast<float>(column) + shift_m,
+                                   1.32F + 0.4F * static_cast<float>(row) - shift_m);
     const float out_m = 0.0155F + 0.0004F * static_cast<float>(slot);
     const Eigen::Vector2f size_m =
         slot % 3 == 2 ? Eigen::Vector2f(0.24F, 0.17F) : Eigen::Vector2f(0.21F, 0.297F);

@@ -52,7 +52,6 @@ class Furnisher {
 
   // A material with wear of its own.
   Material fresh(Finish finish, const Colour& colour, const Colour& second);
-  core::Random& random() { return random_; }
 
  private:
   void mount(const Place& place, const Mounted& mounted, const Materials& materials);

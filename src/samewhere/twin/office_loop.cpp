@@ -39,7 +39,8 @@ std::array<Wall, 8> walls() {
 
 class Builder {
  public:
-  Builder(std::uint64_t seed, double similarity) : furnisher_(rectangles_, seed, similarity) {}
+  Builder(std::uint64_t seed, double similarity)
+      : furnisher_(rectangles_, seed, similarity), layout_(core::seed_of(seed, "twin.layout", 0)) {}
 
   std::vector<Rectangle> build() {
     add_floor_and_ceiling();
@@ -126,9 +127,9 @@ class Builder {
   // Between two doors or windows; beside windows there is room for narrow things only.
   void add_decoration(const Place& place, bool has_room) {
     Place shifted = place;
-    shifted.along_m += static_cast<float>(furnisher_.random().uniform(-0.06, 0.06));
+    shifted.along_m += static_cast<float>(layout_.uniform(-0.06, 0.06));
     constexpr int kNumWide = 4;
-    const auto drawn = static_cast<int>(furnisher_.random().index(8));
+    const auto drawn = static_cast<int>(layout_.index(8));
     switch (has_room ? drawn : kNumWide + drawn % (8 - kNumWide)) {
       case 0:
       case 1:
@@ -166,6 +167,7 @@ class Builder {
 
   std::vector<Rectangle> rectangles_;
   Furnisher furnisher_;
+  core::Random layout_;  // of its own: what stands where does not depend on similarity
   int next_room_ = kFirstRoom;
 };
 

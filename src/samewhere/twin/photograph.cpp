@@ -68,16 +68,12 @@ float vignette(float x_px, float y_px, const cv::Size& size) {
   return 1.0F - kLossInCorner * 0.5F * (dx * dx + dy * dy);
 }
 
-std::uint8_t rounded(float level) {
-  return static_cast<std::uint8_t>(std::min(std::max(level, 0.0F), 255.0F) + 0.5F);
-}
-
 }  // namespace
 
 cv::Mat photograph(const cv::Mat& radiance, float gain, std::uint64_t seed) {
   constexpr float kBrightnessNoise = 1.5F;  // grey levels
   constexpr float kColourNoise = 1.2F;
-  static const ToneCurve kTone;
+  static const ToneCurve tone;
   const cv::Mat projected = blurred(radiance);
   cv::Mat picture(radiance.size(), CV_8UC3);
   for (int y = 0; y < radiance.rows; ++y) {
@@ -95,7 +91,8 @@ cv::Mat photograph(const cv::Mat& radiance, float gain, std::uint64_t seed) {
       for (int channel = 0; channel < 3; ++channel) {
         const float noise =
             common + kColourNoise * nearly_gaussian(static_cast<std::uint32_t>(parts[channel]));
-        level[x][channel] = rounded(kTone.level(scale * light[x][channel]) + noise);
+        level[x][channel] =
+            cv::saturate_cast<std::uint8_t>(tone.level(scale * light[x][channel]) + noise);
       }
     }
   }

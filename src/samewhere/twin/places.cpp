@@ -32,8 +32,9 @@ class Raster {
   int num_cells() const { return num_columns_ * num_rows_; }
 
   Vector2f centre_of(int cell) const {
-    const Vector2f index(static_cast<float>(cell % num_columns_),
-                         static_cast<float>(cell / num_columns_));
+    const int column = cell % num_columns_;
+    const int row = cell / num_columns_;
+    const Vector2f index(static_cast<float>(column), static_cast<float>(row));
     return (index.array() + 0.5F).matrix() / kCellsPerUnit - half_size_;
   }
 
@@ -118,10 +119,12 @@ class Judge {
     constexpr int kNumRows = 15;
     const core::PinholeRadtan& c = geometry::pinhole(camera);
     std::vector<Vector3f> directions;
-    for (int i = 0; i < kNumColumns * kNumRows; ++i) {
-      const Eigen::Vector2d pixel((i % kNumColumns + 0.5) * c.width_px / kNumColumns - 0.5,
-                                  (i / kNumColumns + 0.5) * c.height_px / kNumRows - 0.5);
-      directions.push_back(geometry::bearing(camera, pixel).cast<float>());
+    for (int row = 0; row < kNumRows; ++row) {
+      for (int column = 0; column < kNumColumns; ++column) {
+        const Eigen::Vector2d pixel((column + 0.5) * c.width_px / kNumColumns - 0.5,
+                                    (row + 0.5) * c.height_px / kNumRows - 0.5);
+        directions.push_back(geometry::bearing(camera, pixel).cast<float>());
+      }
     }
     return directions;
   }

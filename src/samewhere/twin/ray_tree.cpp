@@ -165,6 +165,7 @@ int RayTree::build(const Range& range, int depth) {
 
 // A ray on its way through the tree.
 struct RayTree::Search {
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the stack, see below
   Search(const Ray& searched, float max_reach)
       : ray(searched), inverse(searched.direction.cwiseInverse()), reach(max_reach) {}
 

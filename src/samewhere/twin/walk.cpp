@@ -21,7 +21,8 @@ constexpr double kSecondLap_m = 7.5;
 constexpr double kSpeed_m_s = 1.32;
 constexpr double kCornerSlowdown = 0.45;  // share of the speed lost in the middle of a corner
 constexpr double kLookAhead_m = 0.9;      // people look into a bend before they walk it
-constexpr double kSmoothing_m = 0.5;      // of position and heading along the path
+constexpr double kStepSmoothing_m = 0.5;  // half the stretch that the feet round off
+constexpr double kLookSmoothing_m = 1.1;  // and that the eyes do
 
 struct PathPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
@@ -57,14 +58,14 @@ PathPoint sharp_path(double distance_m) {
 }
 
 // The path without jumps of its curvature: a mean over a stretch with weights like a bell.
-PathPoint smooth_path(double distance_m) {
+PathPoint smooth_path(double distance_m, double reach_m) {
   constexpr int kHalfSamples = 8;
   PathPoint mean;
   double sum = 0.0;
   for (int i = -kHalfSamples; i <= kHalfSamples; ++i) {
     const double ratio = static_cast<double>(i) / (kHalfSamples + 1);
     const double weight = 1.0 + std::cos(kPi * ratio);
-    const PathPoint point = sharp_path(distance_m + ratio * kSmoothing_m);
+    const PathPoint point = sharp_path(distance_m + ratio * reach_m);
     mean.position_m += weight * point.position_m;
     mean.heading_rad += weight * point.heading_rad;
     sum += weight;
@@ -74,8 +75,8 @@ PathPoint smooth_path(double distance_m) {
 
 double usual_speed_m_s(double distance_m) {
   constexpr double kReach_m = 0.8;
-  const double turned_rad = smooth_path(distance_m + kReach_m).heading_rad -
-                            smooth_path(distance_m - kReach_m).heading_rad;
+  const double turned_rad = smooth_path(distance_m + kReach_m, kStepSmoothing_m).heading_rad -
+                            smooth_path(distance_m - kReach_m, kStepSmoothing_m).heading_rad;
   return kSpeed_m_s * (1.0 - kCornerSlowdown * turned_rad / (0.5 * kPi));
 }
 
@@ -125,11 +126,11 @@ class Carrier {
 
   core::Rigid3 world_from_camera(double stamp_s, double distance_m) const {
     const double step_rad = 2.0 * kPi * step_hz_ * stamp_s;
-    const PathPoint on_path = smooth_path(distance_m);
+    const PathPoint on_path = smooth_path(distance_m, kStepSmoothing_m);
     const Eigen::Vector2d left(-std::sin(on_path.heading_rad), std::cos(on_path.heading_rad));
     const double sideways_m = sideways_m_.at(stamp_s) + 0.012 * std::sin(0.5 * step_rad);
     const Eigen::Vector2d position_m = on_path.position_m + sideways_m * left;
-    const double yaw_rad = smooth_path(distance_m + kLookAhead_m).heading_rad +
+    const double yaw_rad = smooth_path(distance_m + kLookAhead_m, kLookSmoothing_m).heading_rad +
                            look_rad_.at(stamp_s) + 0.006 * std::sin(0.5 * step_rad + 0.7);
     const double pitch_rad = -0.06 + pitch_rad_.at(stamp_s) + 0.005 * std::sin(step_rad + 1.1);
     return {rotation(yaw_rad, pitch_rad, roll_rad_.at(stamp_s)),

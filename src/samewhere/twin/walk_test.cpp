@@ -46,8 +46,8 @@ TEST_P(OfficeWalk, MovesSmoothlyAtWalkingPace) {
     ASSERT_LT((c.translation - 2.0 * b.translation + a.translation).norm(), 0.02) << "frame " << i;
     const Eigen::Quaterniond turn = b.rotation.conjugate() * c.rotation;
     const Eigen::Quaterniond turn_before = a.rotation.conjugate() * b.rotation;
-    ASSERT_LT(core::angle_rad(turn), 5.0 * kDegree) << "frame " << i;
-    ASSERT_LT(core::angle_rad(turn_before.conjugate() * turn), 0.8 * kDegree) << "frame " << i;
+    ASSERT_LT(core::angle_rad(turn), 4.0 * kDegree) << "frame " << i;
+    ASSERT_LT(core::angle_rad(turn_before.conjugate() * turn), 0.6 * kDegree) << "frame " << i;
   }
 }
 
