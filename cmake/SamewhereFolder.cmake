@@ -9,6 +9,7 @@ target_compile_options(samewhere_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   # fields left out of a designated initialiser have their defaults; gcc 12 cries wolf inside Eigen
   -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # one rounding per operation: the same result on every build of the same source
   -ffp-contract=off
   $<$<BOOL:${SAMEWHERE_WERROR}>:-Werror>)

@@ -109,11 +109,12 @@ TEST_F(Commands, CtrlCFinishesTheFiles) {
 }
 
 TEST_F(Commands, CtrlCIsExitCode130) {
-  const std::string script = "'" + std::string(SAMEWHERE_PROGRAM) +
-                             "' run 'twin:office-loop?seed=2' --out " + quoted(path("cut")) +
-                             " >/dev/null 2>&1 & pid=$!; sleep 4; kill -INT $pid; wait $pid";
-  // job control off: a background process of a plain shell would ignore SIGINT
-  const int status = std::system(("bash -c \"set -m; " + script + "\"").c_str());
+  // job control on: without it a shell's background process ignores SIGINT
+  core::write_file(path("interrupt.sh"),
+                   "set -m\n'" + std::string(SAMEWHERE_PROGRAM) +
+                       "' run 'twin:office-loop?seed=2' --out " + quoted(path("cut")) +
+                       " >/dev/null 2>&1 &\nsleep 4\nkill -INT $!\nwait $!\n");
+  const int status = std::system(("bash " + quoted(path("interrupt.sh"))).c_str());
   EXPECT_EQ(WEXITSTATUS(status), 130);
 }
 

@@ -22,8 +22,9 @@ class Corridor : public testing::Test {
     config.source = "twin:office-loop?seed=1";
     auto source = pipeline::open_source(config);
     truth_ = source->truth();
-    outcome_ = std::make_unique<pipeline::RunOutcome>(run_slam(std::move(source), config));
-    evaluation_ = evaluate_slam(findings_of(outcome_->record), truth_);
+    outcome_ =
+        std::make_unique<pipeline::RunOutcome>(pipeline::run_slam(std::move(source), config));
+    evaluation_ = pipeline::evaluate_slam(pipeline::findings_of(outcome_->record), truth_);
   }
   static void TearDownTestSuite() { outcome_.reset(); }
 

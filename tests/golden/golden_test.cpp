@@ -33,7 +33,8 @@ class Golden : public testing::Test {
     const pipeline::Config config = config_of(name);
     auto source = pipeline::open_source(config);
     const core::Truth truth = source->truth();
-    return evaluate_slam(findings_of(run_slam(std::move(source), config).record), truth);
+    return pipeline::evaluate_slam(
+        pipeline::findings_of(pipeline::run_slam(std::move(source), config).record), truth);
   }
 
   // Recognition by HOG and exact search alone, without geometry.
@@ -44,8 +45,9 @@ class Golden : public testing::Test {
                          "retrieve.window_frames=" + std::to_string(window_frames)});
     auto source = pipeline::open_source(config);
     const core::Truth truth = source->truth();
-    const pipeline::RunOutcome outcome = run_recognition(std::move(source), config);
-    return *evaluate_recognition({0, outcome.matches, outcome.accepted, window_frames}, truth)
+    const pipeline::RunOutcome outcome = pipeline::run_recognition(std::move(source), config);
+    return *pipeline::evaluate_recognition({0, outcome.matches, outcome.accepted, window_frames},
+                                           truth)
                 .curve;
   }
 

@@ -111,15 +111,17 @@ std::string judgement_sections(const RunRecord& record, const Funnel& funnel) {
       "What was refused, and where",
       "Each pair that looks alike passes these checks in turn; the first that fails refuses it.",
       funnel_bars(funnel));
+  const auto refused = refused_rows(record.ledger);
+  if (!refused.empty())
+    html += section(
+        "Refused, most convincing first",
+        "What came closest to being taken for the same place, by inliers. The later view on the "
+        "left.",
+        pair_cards(record, refused, kMaxRefusedPairs));
   const auto accepted = accepted_rows(record.ledger);
   html += accepted.empty() ? section("Accepted pairs", "None.", "")
                            : section("Accepted pairs", "The later view on the left.",
                                      pair_cards(record, accepted, kMaxAcceptedPairs));
-  const auto refused = refused_rows(record.ledger);
-  if (!refused.empty())
-    html += section("Refused, most convincing first",
-                    "What came closest to being taken for the same place, by inliers.",
-                    pair_cards(record, refused, kMaxRefusedPairs));
   return html;
 }
 

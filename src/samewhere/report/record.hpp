@@ -45,7 +45,8 @@ struct RunRecord {
   core::Trajectory odometry;          // before any correction; may be empty
   core::Trajectory truth;             // aligned into the world of the estimate; may be empty
   std::vector<ColouredPoint> points;  // of the map
-  std::map<core::FrameId, std::string> thumbnails;  // JPEG (jpeg.hpp), of frames the ledger speaks of
+  std::map<core::FrameId, std::string>
+      thumbnails;  // JPEG (jpeg.hpp), of frames the ledger speaks of
   std::vector<Figure> figures;
   core::Timings timings;  // stage kWholeFrameStage is what frames per second are counted by
   std::string config_yaml;

@@ -8,9 +8,9 @@
 
 namespace samewhere::report {
 
-// Writes trajectory.tum, odometry.tum (before any correction), frames.csv, loops.json, map.ply, config.yaml, timing.json and report.html
-// into a folder that exists. Each file whole or not at all. Throws InputError if one cannot be
-// written.
+// Writes trajectory.tum, odometry.tum (before any correction), frames.csv, loops.json, map.ply,
+// config.yaml, timing.json and report.html into a folder that exists. Each file whole or not at
+// all. Throws InputError if one cannot be written.
 void write_run(const RunRecord& record, const std::filesystem::path& folder);
 
 // Recognition alone: matches.txt (the best match of each query, accepted or not), accepted.txt,

@@ -39,8 +39,8 @@ class Write : public testing::Test {
 TEST_F(Write, ARunLeavesAllItsFilesAndNothingElse) {
   write_run(sample_record(), first_);
   EXPECT_EQ(names_in(first_),
-            (std::set<std::string>{"trajectory.tum", "odometry.tum", "frames.csv", "loops.json", "map.ply",
-                                   "config.yaml", "timing.json", "report.html"}));
+            (std::set<std::string>{"trajectory.tum", "odometry.tum", "frames.csv", "loops.json",
+                                   "map.ply", "config.yaml", "timing.json", "report.html"}));
   EXPECT_EQ(core::read_tum(first_ / "trajectory.tum").size(), 312u);
   EXPECT_EQ(core::read_file(first_ / "config.yaml"), sample_record().config_yaml);
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/twin/camera.hpp>
 #include <samewhere/twin/depth_sensor.hpp>
 #include <samewhere/twin/office_loop.hpp>
 #include <samewhere/twin/photograph.hpp>
@@ -15,23 +16,9 @@
 namespace samewhere::twin {
 namespace {
 
-core::PinholeRadtan twin_camera() {
-  return {.width_px = 640,
-          .height_px = 480,
-          .fx_px = 525.0,
-          .fy_px = 524.0,
-          .cx_px = 318.6,
-          .cy_px = 241.3,
-          .k1 = 0.05,
-          .k2 = -0.08,
-          .p1 = 0.0006,
-          .p2 = -0.0004,
-          .k3 = 0.0};
-}
-
 std::shared_ptr<const core::Rig> twin_rig() {
   return std::make_shared<core::Rig>(
-      core::Rig{.cameras = {twin_camera()}, .body_from_camera = {core::Rigid3{}}});
+      core::Rig{.cameras = {kTwinCamera}, .body_from_camera = {core::Rigid3{}}});
 }
 
 core::Trajectory first_poses(core::Trajectory walk, int num_frames) {
