@@ -16,6 +16,5 @@ inline constexpr core::PinholeRadtan kTwinCamera = {.width_px = 640,
                                                     .p1 = 0.0006,
                                                     .p2 = -0.0004,
                                                     .k3 = 0.0};
-}
 
 }  // namespace samewhere::twin
