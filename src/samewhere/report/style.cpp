@@ -122,7 +122,7 @@ svg text {
 .pair .verdict.yes { color: var(--yes); }
 .pair .verdict.no { color: var(--no); }
 .pair .verdict.maybe { color: var(--maybe); }
-.pair .scores { color: var(--soft); white-space: nowrap; }
+.pair .scores { color: var(--soft); }
 .pair p { margin: 0.25rem 0 0; overflow-wrap: anywhere; }
 details { margin-top: 3.5rem; border-top: 1px solid var(--line); padding-top: 1.25rem; }
 summary { cursor: pointer; font-weight: 600; }
