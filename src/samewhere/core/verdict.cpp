@@ -17,6 +17,8 @@ std::string_view name_of(Refusal refusal) {
       return "inliers";
     case Refusal::kSpread:
       return "spread";
+    case Refusal::kAgreement:
+      return "agreement";
     case Refusal::kOdometry:
       return "odometry";
   }

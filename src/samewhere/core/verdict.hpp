@@ -26,8 +26,12 @@ struct GeometryEvidence {
   double inlier_ratio = 0.0;          // num_inliers / num_matches
   double spread_ratio = 0.0;          // share of the query image's 8 x 8 cells that hold an inlier
   double reprojection_rmse_px = 0.0;  // of the inliers
-  std::optional<Sim3>
-      match_from_query;  // body of the match from body of the query; none without depth
+  // Body of the match from body of the query; none without depth.
+  std::optional<Sim3> match_from_query;
+  // How far the pose found from the query's depth is from that found from the match's depth; none
+  // where only one of them has depth.
+  std::optional<double> disagreement_m;
+  std::optional<double> disagreement_rad;
 };
 
 // What the odometry since the match says about the relative pose that geometry found.
@@ -46,11 +50,11 @@ struct Evidence {
 };
 
 // Where in the funnel a candidate was refused, in the order of the checks.
-enum class Refusal { kSimilarity, kPause, kMatches, kInliers, kSpread, kOdometry };
+enum class Refusal { kSimilarity, kPause, kMatches, kInliers, kSpread, kAgreement, kOdometry };
 
-inline constexpr Refusal kAllRefusals[] = {Refusal::kSimilarity, Refusal::kPause,
-                                           Refusal::kMatches,    Refusal::kInliers,
-                                           Refusal::kSpread,     Refusal::kOdometry};
+inline constexpr Refusal kAllRefusals[] = {
+    Refusal::kSimilarity, Refusal::kPause,     Refusal::kMatches, Refusal::kInliers,
+    Refusal::kSpread,     Refusal::kAgreement, Refusal::kOdometry};
 
 std::string_view name_of(Refusal refusal);
 

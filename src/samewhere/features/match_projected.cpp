@@ -40,6 +40,11 @@ std::optional<Match> best_near(const ProjectedPoint& point, const unsigned char*
 
 }  // namespace
 
+int octave_at(int octave, double described_range_m, double range_m, const Config& config) {
+  const double levels = std::log(described_range_m / range_m) / std::log(config.scale_factor);
+  return static_cast<int>(std::clamp(std::round(octave + levels), 0.0, config.num_levels - 1.0));
+}
+
 PixelGrid::PixelGrid(const Features& features, cv::Size image_size_px)
     : features_(features),
       num_columns_(image_size_px.width / kCell_px + 1),

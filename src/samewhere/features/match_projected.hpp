@@ -33,6 +33,10 @@ struct ProjectedPoint {
   int octave = 0;         // level on which it was seen first
 };
 
+// The pyramid level on which a point appears from range_m that was seen on `octave` from
+// described_range_m: twice as near, it is twice as large. Within the levels that there are.
+int octave_at(int octave, double described_range_m, double range_m, const Config& config);
+
 // For each point the feature near its projection that looks most like it: not further than
 // radius_px * scale^octave, at most two levels away, clearly nearer than the second best on the
 // same level. A feature goes to the point nearest in appearance. Match{first = row of the point,

@@ -152,6 +152,13 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
   const RecognitionFindings findings{static_cast<int>(record.ledger.size()), outcome.matches,
                                      outcome.accepted, config.retrieve.window_frames};
   record.figures = figures_of(evaluate_recognition(findings, truth));
+  if (record.ledger.empty()) {
+    record.figures.push_back(
+        {"note",
+         fmt::format("no frame is more than {} frames older than another that looks like it "
+                     "(retrieve.window_frames)",
+                     config.retrieve.window_frames)});
+  }
   return outcome;
 }
 

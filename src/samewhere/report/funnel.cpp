@@ -51,6 +51,8 @@ std::string_view question_of(core::Refusal refusal) {
       return "do enough matches agree on one geometry?";
     case core::Refusal::kSpread:
       return "are they spread over the image?";
+    case core::Refusal::kAgreement:
+      return "do both views find the same relative pose?";
     case core::Refusal::kOdometry:
       return "does it fit the path travelled?";
   }

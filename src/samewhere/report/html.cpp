@@ -14,7 +14,7 @@
 namespace samewhere::report {
 namespace {
 
-constexpr std::size_t kMaxAcceptedPairs = 60;
+constexpr std::size_t kMaxAcceptedPairs = 300;
 constexpr std::size_t kMaxRefusedPairs = 12;
 
 std::string counted(int count, std::string_view one, std::string_view many) {

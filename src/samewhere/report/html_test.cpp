@@ -125,9 +125,10 @@ TEST(ReportHtml, SaysWhenNoPoseWasMeasuredOrTheRunWasInterrupted) {
 
 TEST(ReportHtml, CapsTheAcceptedPairsAndSaysSo) {
   RunRecord record;
-  for (int i = 0; i < 75; ++i) record.ledger.push_back(loop_row(candidate(i, 100 + i, i, 0.8), 40));
+  for (int i = 0; i < 315; ++i)
+    record.ledger.push_back(loop_row(candidate(i, 100 + i, i, 0.8), 40));
   const std::string html = report_html(record);
-  EXPECT_EQ(count_of(html, "<figure class=\"pair\">"), 60);
+  EXPECT_EQ(count_of(html, "<figure class=\"pair\">"), 300);
   EXPECT_NE(html.find("15 more in loops.json"), std::string::npos);
 }
 

@@ -28,6 +28,12 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "inlier_ratio", evidence.geometry->inlier_ratio);
     add_score(scores, "spread_ratio", evidence.geometry->spread_ratio);
     add_score(scores, "reprojection_rmse_px", evidence.geometry->reprojection_rmse_px);
+    if (evidence.geometry->disagreement_m) {
+      add_score(scores, "disagreement_m", *evidence.geometry->disagreement_m);
+    }
+    if (evidence.geometry->disagreement_rad) {
+      add_score(scores, "disagreement_rad", *evidence.geometry->disagreement_rad);
+    }
   }
   if (evidence.odometry) {
     add_score(scores, "correction_m", evidence.odometry->correction_m);

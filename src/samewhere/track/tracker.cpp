@@ -54,13 +54,9 @@ std::vector<Match> Tracker::search(const View& view, const LocalMap& map,
     const Eigen::Vector3d in_camera = from_reference * map.points_in_reference[k];
     const auto pixel = geometry::project_undistorted(view.rig->cameras[0], in_camera);
     if (!pixel || !is_inside(*pixel, view.image_size_px, radius_px)) continue;
-    // twice as near, it appears on a level twice as coarse
-    const double levels =
-        std::log(map.range_m[k] / in_camera.norm()) / std::log(settings_.features.scale_factor);
-    const double octave = std::round(map.octave[k] + levels);
-    points.push_back(
-        {i, *pixel,
-         static_cast<int>(std::clamp(octave, 0.0, settings_.features.num_levels - 1.0))});
+    const int octave =
+        features::octave_at(map.octave[k], map.range_m[k], in_camera.norm(), settings_.features);
+    points.push_back({i, *pixel, octave});
   }
   return match_projected(points, map.descriptors, view, radius_px, settings_.features);
 }

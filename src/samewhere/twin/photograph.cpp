@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -24,7 +25,9 @@ class ToneCurve {
   }
 
   float level(float light) const {
-    const float step = std::min(light * kStepsPerUnit, static_cast<float>(levels_.size() - 1));
+    // colour noise may take a dark pixel below zero
+    const float step =
+        std::clamp(light * kStepsPerUnit, 0.0F, static_cast<float>(levels_.size() - 1));
     return levels_[static_cast<std::size_t>(step)];
   }
 

@@ -15,6 +15,8 @@ struct Config {
   int min_matches = 20;
   int min_inliers = 40;
   double min_spread_ratio = 0.12;
+  double max_disagreement_m = 0.15;
+  double max_disagreement_rad = 0.05;
   double max_error_px = 4.0;
   double refine_radius_px = 6.0;
   int ransac_iterations = 500;
@@ -43,6 +45,13 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "share of the picture's 8 x 8 cells that inliers must cover",
          .min = 0.0,
          .max = 1.0});
+  visit("max_disagreement_m", config.max_disagreement_m,
+        {.help =
+             "the pose from the query's depth and that from the match's may differ by this, metres",
+         .min = 0.001,
+         .max = 100.0});
+  visit("max_disagreement_rad", config.max_disagreement_rad,
+        {.help = "the same, radians", .min = 0.001, .max = 3.2});
   visit("max_error_px", config.max_error_px,
         {.help = "reprojection error of a RANSAC inlier", .min = 0.1, .max = 50.0});
   visit("refine_radius_px", config.refine_radius_px,

@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include <fmt/format.h>
 
 #include <samewhere/verify/decide.hpp>
@@ -11,9 +13,25 @@ using core::Evidence;
 using core::Refusal;
 using core::Rejection;
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
 Rejection rejection(const Candidate& candidate, const Evidence& evidence, Refusal stage,
                     std::string reason) {
   return {candidate.id, evidence, stage, std::move(reason)};
+}
+
+// Views that share only a narrow or blurred part find a pose each, but not the same one.
+std::optional<Rejection> check_agreement(const Candidate& candidate, const Evidence& evidence,
+                                         const Config& config) {
+  const double apart_m = evidence.geometry->disagreement_m.value_or(0.0);
+  const double apart_rad = evidence.geometry->disagreement_rad.value_or(0.0);
+  if (apart_m <= config.max_disagreement_m && apart_rad <= config.max_disagreement_rad) {
+    return std::nullopt;
+  }
+  return rejection(candidate, evidence, Refusal::kAgreement,
+                   fmt::format("the relative poses found from each of the two views differ by "
+                               "{:.2f} m and {:.1f} degrees",
+                               apart_m, apart_rad * kDegrees));
 }
 
 std::optional<Rejection> check_geometry(const Candidate& candidate, const Evidence& evidence,
@@ -35,7 +53,7 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
         fmt::format("the features that agree cover {:.0f} % of the picture, {:.0f} % needed",
                     100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
   }
-  return std::nullopt;
+  return check_agreement(candidate, evidence, config);
 }
 
 std::optional<Rejection> check_odometry(const Candidate& candidate, const Evidence& evidence,
@@ -48,8 +66,7 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
       fmt::format("would move the camera by {:.2f} m and {:.1f} degrees, more than odometry can "
                   "have drifted "
                   "(chi-square {:.0f}, at most {:.0f})",
-                  evidence.odometry->correction_m,
-                  evidence.odometry->correction_rad * 57.29577951308232,
+                  evidence.odometry->correction_m, evidence.odometry->correction_rad * kDegrees,
                   evidence.odometry->mahalanobis_squared, config.max_odometry_chi_square));
 }
 

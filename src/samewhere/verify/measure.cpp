@@ -118,10 +118,12 @@ class PoseMeasurement {
     for (int i = 0; i < match_.features->size(); ++i) {
       const auto& point = points_[static_cast<std::size_t>(i)];
       if (!point) continue;
-      const auto pixel =
-          geometry::project_undistorted(query_.rig->cameras[0], camera_from_match * *point);
-      if (pixel)
-        projected.push_back({i, *pixel, match_.features->octave[static_cast<std::size_t>(i)]});
+      const Eigen::Vector3d in_query = camera_from_match * *point;
+      const auto pixel = geometry::project_undistorted(query_.rig->cameras[0], in_query);
+      if (!pixel) continue;
+      const int octave = features::octave_at(match_.features->octave[static_cast<std::size_t>(i)],
+                                             point->norm(), in_query.norm(), settings_.features);
+      projected.push_back({i, *pixel, octave});
     }
     return match_projected(projected, match_.features->descriptors, query_,
                            settings_.verify.refine_radius_px, settings_.features);
@@ -141,6 +143,38 @@ class PoseMeasurement {
   const MeasureSettings& settings_;
   std::vector<std::optional<Eigen::Vector3d>> points_;
 };
+
+bool has_depth(const View& view) {
+  const auto& depth_m = view.features->depth_m;
+  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
+}
+
+std::vector<Match> swapped(std::vector<Match> matches) {
+  for (auto& match : matches) std::swap(match.first, match.second);
+  return matches;
+}
+
+// The pose from the match's depth, and, where the query has depth too, that from the query's: how
+// far they are apart says how well the views fix it, and their mean is better than either.
+GeometryEvidence measure_both_ways(const View& query, const View& match,
+                                   const std::vector<Match>& matches,
+                                   const MeasureSettings& settings, core::Random& random) {
+  GeometryEvidence evidence = PoseMeasurement(query, match, settings).measure(matches, random);
+  if (!evidence.match_from_query || !has_depth(query)) return evidence;
+  const GeometryEvidence back =
+      PoseMeasurement(match, query, settings).measure(swapped(matches), random);
+  if (!back.match_from_query) {
+    evidence.num_inliers = 0;  // one view alone finds a pose: that is no agreement
+    return evidence;
+  }
+  const core::Rigid3 forth = rigid_part(*evidence.match_from_query);
+  const core::Rigid3 forth_again = inverse(rigid_part(*back.match_from_query));
+  const core::Rigid3 apart = inverse(forth) * forth_again;
+  evidence.disagreement_m = apart.translation.norm();
+  evidence.disagreement_rad = core::angle_rad(apart.rotation);
+  evidence.match_from_query = core::Sim3::from_rigid(interpolate(forth, forth_again, 0.5));
+  return evidence;
+}
 
 GeometryEvidence measure_epipolar(const View& query, const View& match,
                                   const std::vector<Match>& matches, const Config& config,
@@ -172,11 +206,6 @@ GeometryEvidence measure_epipolar(const View& query, const View& match,
   return evidence;
 }
 
-bool has_depth(const View& view) {
-  const auto& depth_m = view.features->depth_m;
-  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
-}
-
 }  // namespace
 
 GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& query,
@@ -188,7 +217,7 @@ GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& 
       match_pair(match.features->descriptors, query.features->descriptors, settings.features);
   const bool can_have_pose =
       query.rig->is_calibrated() && match.rig->is_calibrated() && has_depth(match);
-  if (can_have_pose) return PoseMeasurement(query, match, settings).measure(matches, random);
+  if (can_have_pose) return measure_both_ways(query, match, matches, settings, random);
   return measure_epipolar(query, match, matches, settings.verify, random);
 }
 

@@ -23,6 +23,9 @@ TEST(MeasureGeometry, FindsTheRelativePoseOfTheSamePlace) {
   EXPECT_LT(core::log_r3so3(inverse(kMoved) * rigid_part(*evidence.match_from_query)).norm(),
             0.005);
   EXPECT_GT(evidence.num_inliers, 100);
+  ASSERT_TRUE(evidence.disagreement_m && evidence.disagreement_rad);
+  EXPECT_LT(*evidence.disagreement_m, 0.02);
+  EXPECT_LT(*evidence.disagreement_rad, 0.01);
   EXPECT_GT(evidence.spread_ratio, 0.5);
   EXPECT_LT(evidence.reprojection_rmse_px, 1.0);
 }
@@ -93,6 +96,12 @@ TEST(Decide, EachCheckRefusesUnderItsOwnName) {
   evidence = good_evidence();
   evidence.geometry->spread_ratio = 0.5 * config.min_spread_ratio;
   EXPECT_EQ(stage(evidence, config), "spread");
+  evidence = good_evidence();
+  evidence.geometry->disagreement_m = 2.0 * config.max_disagreement_m;
+  EXPECT_EQ(stage(evidence, config), "agreement");
+  evidence = good_evidence();
+  evidence.geometry->disagreement_rad = 2.0 * config.max_disagreement_rad;
+  EXPECT_EQ(stage(evidence, config), "agreement");
   evidence = good_evidence();
   evidence.odometry->mahalanobis_squared = 2.0 * config.max_odometry_chi_square;
   EXPECT_EQ(stage(evidence, config), "odometry");
