@@ -123,7 +123,7 @@ std::optional<Track> Tracker::solve(const View& view, const LocalMap& map,
 std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
                                     const core::Rigid3& guessed_reference_from_body) const {
   for (const double radius_px : {settings_.track.near_radius_px, settings_.track.far_radius_px}) {
-    const auto track = solve(view, map, search(view, map, guessed_reference_from_body, radius_px));
+    auto track = solve(view, map, search(view, map, guessed_reference_from_body, radius_px));
     if (track && track->pose.num_inliers >= settings_.track.weak_inliers) return track;
   }
   return track_anywhere(view, map);
