@@ -1,6 +1,7 @@
+#include <cstdio>
 #include <exception>
+#include <string>
 
-#include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
 
 #include "commands.hpp"
@@ -14,7 +15,8 @@ int complain(std::string message, int exit_code) {
   for (char& c : message) {
     if (c == '\n' || c == '\r') c = ' ';
   }
-  fmt::print(stderr, "samewhere: {}\n", message);
+  // not fmt::print, which throws where stderr is closed
+  std::fputs(("samewhere: " + message + "\n").c_str(), stderr);
   return exit_code;
 }
 

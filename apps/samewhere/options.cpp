@@ -12,7 +12,8 @@ void add_config_options(CLI::App& command, ConfigOptions& options) {
   command
       .add_option("--set", options.assignments,
                   "one setting, e.g. verify.min_inliers=30; may be repeated")
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);
 }
 
 pipeline::Config load(const ConfigOptions& options) {

@@ -29,9 +29,11 @@ struct RunCommand {
 
 // A folder name that tells where the run came from: the last part of a path, the preset of a twin.
 std::string short_name(const std::string& source) {
-  std::string name = std::filesystem::path(source).lexically_normal().filename().string();
-  if (name.empty() || name == ".")
-    name = std::filesystem::absolute(source).lexically_normal().parent_path().filename().string();
+  std::string name = std::filesystem::path(pipeline::absolute_source(source) + "/")
+                         .parent_path()
+                         .filename()
+                         .string();
+  if (name.starts_with("twin:")) name = name.substr(5, name.find('?') - 5);
   for (char& c : name) {
     const bool is_plain =
         std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
@@ -75,9 +77,22 @@ void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::p
   fmt::print("{}\n", (folder / "report.html").string());
 }
 
+// What an earlier run left in the folder would be taken for this one's.
+void remove_old_results(const std::filesystem::path& folder) {
+  for (const char* name :
+       {"trajectory.tum", "odometry.tum", "frames.csv", "map.ply", "matches.txt", "accepted.txt",
+        "loops.json", "config.yaml", "timing.json", "report.html"}) {
+    std::error_code ignored;  // a file that stays will be written over, or fail loudly then
+    std::filesystem::remove(folder / name, ignored);
+  }
+}
+
 int execute(const RunCommand& command, Work work) {
+  core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
+  if (!config.input.camera.empty())
+    config.input.camera = pipeline::absolute_source(config.input.camera);
   const std::filesystem::path folder =
       command.out.empty() ? unused_folder(command.source) : std::filesystem::path(command.out);
   auto source = pipeline::open_source(config);
@@ -85,13 +100,13 @@ int execute(const RunCommand& command, Work work) {
   // only now, so that a bad source leaves no folder behind; and not later, so that a folder that
   // cannot be written is found out before the work is done
   core::make_writable_folder(folder);
-  core::catch_interrupts();
+  remove_old_results(folder);
   const pipeline::RunOutcome outcome = work == Work::kSlam
                                            ? pipeline::run_slam(std::move(source), config)
                                            : pipeline::run_recognition(std::move(source), config);
   write(outcome, work, folder);
   print_outcome(outcome, folder);
-  if (outcome.input_error) throw core::InputError(*outcome.input_error);
+  if (outcome.record.input_error) throw core::InputError(*outcome.record.input_error);
   return outcome.record.is_interrupted ? kInterrupted : kDone;
 }
 

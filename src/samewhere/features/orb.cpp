@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -19,6 +20,13 @@ constexpr int kPatch_px = 31;    // of ORB
 // More than most pictures have: the strongest corners must not crowd out a quiet part before they
 // are spread.
 constexpr int kMaxDetected = 10000;
+
+// Levels that still have room for a patch and its border.
+int num_usable_levels(const cv::Size& size_px, const Config& config) {
+  const double room = std::min(size_px.width, size_px.height) / static_cast<double>(kMinSide_px);
+  const double levels = std::floor(std::log(room) / std::log(config.scale_factor)) + 1.0;
+  return static_cast<int>(std::clamp(levels, 1.0, static_cast<double>(config.num_levels)));
+}
 
 bool is_stronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
   if (a.response != b.response) return a.response > b.response;
@@ -50,7 +58,7 @@ void append(Features& features, const cv::KeyPoint& keypoint, const core::Frame&
   const Eigen::Vector2d undistorted =
       is_calibrated ? geometry::undistort(frame.rig->cameras[0], raw) : raw;
   const float depth_m = frame.depth_m ? depth_at(*frame.depth_m, keypoint.pt) : 0.0F;
-  double right_x_px = -1.0;
+  double right_x_px = std::numeric_limits<double>::quiet_NaN();
   if (depth_m > 0.0F && is_calibrated) {
     const double disparity_px =
         config.virtual_baseline_m * geometry::pinhole(frame.rig->cameras[0]).fx_px / depth_m;
@@ -96,9 +104,10 @@ View extract(const core::Frame& frame, const Config& config) {
   const cv::Mat grey = as_grey(frame.images.at(0));
   auto features = std::make_shared<Features>();
   if (std::min(grey.rows, grey.cols) >= kMinSide_px) {
-    const auto orb = cv::ORB::create(kMaxDetected, static_cast<float>(config.scale_factor),
-                                     config.num_levels, kBorder_px, 0, 2, cv::ORB::HARRIS_SCORE,
-                                     kPatch_px, config.min_corner_contrast);
+    const int num_levels = num_usable_levels(grey.size(), config);
+    const auto orb = cv::ORB::create(
+        std::max(kMaxDetected, config.num_features), static_cast<float>(config.scale_factor),
+        num_levels, kBorder_px, 0, 2, cv::ORB::HARRIS_SCORE, kPatch_px, config.min_corner_contrast);
     std::vector<cv::KeyPoint> keypoints;
     orb->detect(grey, keypoints);
     keypoints = spread_evenly(std::move(keypoints), config.num_features, config.cell_px);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -47,8 +48,9 @@ inline void append_test_feature(Features& features, const TestWorld& world, std:
   features.raw_px.push_back(pixel.cast<float>());
   features.undistorted_px.push_back(pixel.cast<float>());
   features.depth_m.push_back(static_cast<float>(depth_m));
-  features.right_x_px.push_back(
-      depth_m > 0.0 ? static_cast<float>(pixel.x() - 500 * 0.075 / depth_m) : -1.0F);
+  features.right_x_px.push_back(depth_m > 0.0
+                                    ? static_cast<float>(pixel.x() - 500 * 0.075 / depth_m)
+                                    : std::numeric_limits<float>::quiet_NaN());
   features.octave.push_back(0);
   features.angle_rad.push_back(0.0F);
   features.rgb.push_back({1, 2, 3});

@@ -17,7 +17,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
       "min_landmarks", config.min_landmarks,
       {.help = "a view with fewer features of known depth is no keyframe", .min = 6, .max = 10000});
   visit("min_tracked_ratio", config.min_tracked_ratio,
-        {.help = "new keyframe when fewer of the reference's landmarks are still seen",
+        {.help =
+             "new keyframe when the view shows fewer landmarks than this share of the reference's",
          .min = 0.0,
          .max = 1.0});
   visit("max_move_ratio", config.max_move_ratio,

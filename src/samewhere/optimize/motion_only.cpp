@@ -79,7 +79,7 @@ MotionResidual motion_residual(const MotionProblem& problem, const MotionObserva
   const double x = c.fx_px * p.x() * inverse_z + c.cx_px;
   const double y = c.fy_px * p.y() * inverse_z + c.cy_px;
   const double disparity = c.fx_px * problem.baseline_m * inverse_z;
-  const bool has_depth = observation.right_x_px >= 0.0;
+  const bool has_depth = std::isfinite(observation.right_x_px);
   r.size = has_depth ? 3 : 2;
   r.value << x - observation.undistorted_px.x(), y - observation.undistorted_px.y(),
       has_depth ? x - disparity - observation.right_x_px : 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,8 +14,9 @@ namespace samewhere::optimize {
 struct MotionObservation {
   Eigen::Vector3d point_in_world = Eigen::Vector3d::Zero();  // metres
   Eigen::Vector2d undistorted_px = Eigen::Vector2d::Zero();
-  double right_x_px = -1.0;  // in the (virtual) right picture; negative = no depth
-  double sigma_px = 1.0;     // standard deviation of the pixel coordinates
+  double right_x_px =
+      std::numeric_limits<double>::quiet_NaN();  // virtual right picture; NaN = no depth
+  double sigma_px = 1.0;                         // standard deviation of the pixel coordinates
 };
 
 struct MotionProblem {

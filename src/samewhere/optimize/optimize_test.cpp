@@ -136,7 +136,7 @@ MotionProblem random_motion(core::Random& random, const core::Rigid3& camera_fro
     const Eigen::Vector3d p(random.uniform(-0.6, 0.6) * z, random.uniform(-0.4, 0.4) * z, z);
     const double x = 500 * p.x() / z + 320 + noise_px * random.gaussian();
     const double y = 505 * p.y() / z + 240 + noise_px * random.gaussian();
-    MotionObservation seen{inverse(camera_from_world) * p, {x, y}, -1.0, 1.0};
+    MotionObservation seen{inverse(camera_from_world) * p, {x, y}};
     if (i % 2 == 0) seen.right_x_px = x - 500 * 0.075 / z;
     if (random.uniform() < outlier_ratio)
       seen.undistorted_px = {random.uniform(0, 640), random.uniform(0, 480)};

@@ -50,11 +50,13 @@ core::Verdict LoopDetector::judge(const core::Candidate& candidate, const featur
 
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const verify::Config& config) {
+  const auto rank = [&](const core::LedgerRow& row) {
+    return std::pair(core::is_loop(row.verdict),
+                     verify::score(core::evidence_of(row.verdict), config));
+  };
   const core::LedgerRow* best = nullptr;
   for (const auto& row : rows) {
-    const double score = verify::score(core::evidence_of(row.verdict), config);
-    if (best == nullptr || score > verify::score(core::evidence_of(best->verdict), config))
-      best = &row;
+    if (best == nullptr || rank(row) > rank(*best)) best = &row;
   }
   return best;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -19,12 +20,14 @@ namespace samewhere::pipeline {
 namespace {
 
 constexpr int kThumbnailWidth_px = 160;
+constexpr double kLongestWindow_frames = 1e9;
 
 // The window in frames, if it was given in seconds.
 Config resolved(Config config, const core::SourceInfo& info) {
   auto& retrieve = config.retrieve;
   if (retrieve.window_frames < 0) {
-    retrieve.window_frames = static_cast<int>(std::lround(retrieve.window_s * info.frame_rate_hz));
+    retrieve.window_frames = static_cast<int>(
+        std::lround(std::min(retrieve.window_s * info.frame_rate_hz, kLongestWindow_frames)));
   }
   return config;
 }
@@ -48,7 +51,7 @@ void for_each_frame(core::Source& source, const char* what, core::Timings& timin
       const core::ScopedTimer timer(timings, "wait for input");
       frame = source.next();
     } catch (const core::InputError& error) {
-      outcome.input_error = error.what();
+      outcome.record.input_error = error.what();
       return;
     }
     if (!frame) return;

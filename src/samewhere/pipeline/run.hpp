@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,6 @@ struct RunOutcome {
   // Recognition alone: the best match of each query with its score, and those accepted.
   std::vector<report::ScoredPair> matches;
   std::vector<report::ScoredPair> accepted;
-  // The source broke here; everything before is in the record.
-  std::optional<std::string> input_error;
 };
 
 // SLAM over a source, read one frame ahead in its own thread, with a progress line on stderr. Stops

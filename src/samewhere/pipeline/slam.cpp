@@ -47,25 +47,32 @@ std::optional<map::TrackedView> Slam::locate(const features::View& view) {
 }
 
 std::optional<map::TrackedView> Slam::locate_in_map(const features::View& view) {
-  auto track = track_from_last(view);
+  std::optional<map::TrackedView> best = track_from_last(view);
+  const bool is_poor = !best || best->pose.status == core::FrameStatus::kWeak;
   const bool can_promote = last_ && !keyframe_of_.contains(last_->view.frame) &&
                            map::num_with_depth(last_->view) >= config_.map.min_landmarks;
-  const bool is_poor = !track || track->pose.status == core::FrameStatus::kWeak;
   if (is_poor && can_promote) {
     // the reference is too far away: what the last frame saw is nearer
     keep(*last_);
     auto nearer = track_from_last(view);
-    if (nearer) track = nearer;
+    if (nearer && (!best || nearer->pose.num_inliers > best->pose.num_inliers)) best = nearer;
   }
-  if (!track) return std::nullopt;
-  auto tracked = tracked_view(view, *track);
-  if (!last_) tracked.pose.status = core::FrameStatus::kResumed;
-  return tracked;
+  if (best && !last_) best->pose.status = core::FrameStatus::kResumed;
+  return best;
 }
 
-std::optional<track::Track> Slam::track_from_last(const features::View& view) {
-  if (!last_) return tracker_.track_anywhere(view, local_map_);
-  return tracker_.track(view, local_map_, last_->pose.reference_from_frame * last_from_next_);
+std::optional<map::TrackedView> Slam::track_from_last(const features::View& view) {
+  const auto track = last_ ? tracker_.track(view, local_map_, guessed_pose())
+                           : tracker_.track_anywhere(view, local_map_);
+  if (!track) return std::nullopt;
+  return tracked_view(view, *track);
+}
+
+// The last step once more, relative to the reference of the local map.
+core::Rigid3 Slam::guessed_pose() const {
+  const core::Rigid3 world_from_last =
+      map_.at(last_->pose.reference_keyframe).world_from_body * last_->pose.reference_from_frame;
+  return inverse(map_.at(local_map_.reference).world_from_body) * world_from_last * last_from_next_;
 }
 
 // The motion of this frame against the last, relative to one keyframe.
@@ -102,9 +109,11 @@ void Slam::keep(const map::TrackedView& tracked) {
   const core::KeyframeId added = map_.keyframes.back().id;
   keyframe_of_[tracked.view.frame] = added;
   local_map_ = scene::build_local_map(map_, added, config_.map.max_neighbours);
-  if (last_ && last_->view.frame == tracked.view.frame) {
-    last_->pose.reference_keyframe = added;
-    last_->pose.reference_from_frame = core::Rigid3{};
+  // from now on the frame is where its keyframe is, wherever a loop moves it
+  for (core::FramePose* pose : {&last_->pose, &frames_.back()}) {
+    core::require(pose->frame == tracked.view.frame, "the frame that is kept is the last one");
+    pose->reference_keyframe = added;
+    pose->reference_from_frame = core::Rigid3{};
   }
 }
 

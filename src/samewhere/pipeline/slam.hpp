@@ -37,7 +37,8 @@ class Slam {
   // Where am I? Nothing: lost.
   std::optional<map::TrackedView> locate(const features::View& view);
   std::optional<map::TrackedView> locate_in_map(const features::View& view);
-  std::optional<track::Track> track_from_last(const features::View& view);
+  std::optional<map::TrackedView> track_from_last(const features::View& view);
+  core::Rigid3 guessed_pose() const;
   // The view becomes the reference that the next frames are tracked from.
   void keep(const map::TrackedView& tracked);
   void start(const features::View& view);

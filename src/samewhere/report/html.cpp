@@ -48,6 +48,9 @@ std::string header(const RunRecord& record, const Funnel& funnel) {
                   escaped(record.title), escaped(record.source), lead(record, funnel));
   if (record.is_interrupted)
     html += "<p class=\"warning\">This run was interrupted: the page shows it up to there.</p>";
+  if (record.input_error)
+    html += fmt::format("<p class=\"warning\">The recording broke and the run ended there: {}</p>",
+                        escaped(*record.input_error));
   if (!record.figures.empty()) {
     html += "<dl class=\"figures\">";
     for (const Figure& figure : record.figures)

@@ -51,6 +51,7 @@ struct RunRecord {
   core::Timings timings;  // stage kWholeFrameStage is what frames per second are counted by
   std::string config_yaml;
   bool is_interrupted = false;
+  std::optional<std::string> input_error;  // the source broke: what came after is missing
 };
 
 // The name under which the pipeline times all work on one frame.

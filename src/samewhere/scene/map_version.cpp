@@ -7,16 +7,13 @@
 namespace samewhere::scene {
 namespace {
 
-// Variance of a triangulated depth grows with the fourth power of the depth; the factor cancels in
-// the mean.
-double weight_of_depth(double depth_m) { return 1.0 / std::pow(depth_m, 4.0); }
-
 // The new sighting becomes the landmark's looks; its depth, if it has one, is averaged into the
 // position.
 void see_again(MapVersion& map, const Sighting& sighting) {
   Landmark& landmark = map.landmarks.edit(sighting.landmark.index());
   const Keyframe& keyframe = map.at(sighting.observation.keyframe);
   const auto slot = static_cast<std::size_t>(sighting.observation.slot);
+  core::require(slot < keyframe.slots.size(), "a sighting names a slot of its keyframe");
   const core::Rigid3 anchor_from_body =
       inverse(map.at(landmark.anchor).world_from_body) * keyframe.world_from_body;
   const core::Rigid3& body_from_camera = keyframe.view.rig->body_from_camera[0];

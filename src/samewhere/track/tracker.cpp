@@ -122,11 +122,21 @@ std::optional<Track> Tracker::solve(const View& view, const LocalMap& map,
 
 std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
                                     const core::Rigid3& guessed_reference_from_body) const {
+  std::optional<Track> best;
+  const auto is_enough = [&] {
+    return best && best->pose.num_inliers >= settings_.track.weak_inliers;
+  };
+  const auto offer = [&](std::optional<Track> track) {
+    if (track && (!best || track->pose.num_inliers > best->pose.num_inliers))
+      best = std::move(track);
+  };
   for (const double radius_px : {settings_.track.near_radius_px, settings_.track.far_radius_px}) {
-    auto track = solve(view, map, search(view, map, guessed_reference_from_body, radius_px));
-    if (track && track->pose.num_inliers >= settings_.track.weak_inliers) return track;
+    if (!is_enough()) {
+      offer(solve(view, map, search(view, map, guessed_reference_from_body, radius_px)));
+    }
   }
-  return track_anywhere(view, map);
+  if (!is_enough()) offer(track_anywhere(view, map));
+  return best;
 }
 
 std::optional<Track> Tracker::track_anywhere(const View& view, const LocalMap& map) const {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -27,6 +28,10 @@ std::optional<Rejection> check_agreement(const Candidate& candidate, const Evide
   const double apart_rad = evidence.geometry->disagreement_rad.value_or(0.0);
   if (apart_m <= config.max_disagreement_m && apart_rad <= config.max_disagreement_rad) {
     return std::nullopt;
+  }
+  if (!std::isfinite(apart_m)) {
+    return rejection(candidate, evidence, Refusal::kAgreement,
+                     "only one of the two views finds a relative pose");
   }
   return rejection(candidate, evidence, Refusal::kAgreement,
                    fmt::format("the relative poses found from each of the two views differ by "

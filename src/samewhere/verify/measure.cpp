@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -164,7 +165,9 @@ GeometryEvidence measure_both_ways(const View& query, const View& match,
   const GeometryEvidence back =
       PoseMeasurement(match, query, settings).measure(swapped(matches), random);
   if (!back.match_from_query) {
-    evidence.num_inliers = 0;  // one view alone finds a pose: that is no agreement
+    // one view alone finds a pose: they could not disagree more
+    evidence.disagreement_m = std::numeric_limits<double>::infinity();
+    evidence.disagreement_rad = std::numeric_limits<double>::infinity();
     return evidence;
   }
   const core::Rigid3 forth = rigid_part(*evidence.match_from_query);
