@@ -157,8 +157,7 @@ TEST_F(BadInput, UnwritableOutputFolder) {
       run("run " + quoted(source()) + " --out " + quoted(folder_.root() / "a_file/out")),
       {"a_file/out"});
   // nobody may make folders there, not even root
-  expect_clear_error(run("run " + quoted(source()) + " --out /proc/nowhere"),
-                     {"/proc/nowhere"});
+  expect_clear_error(run("run " + quoted(source()) + " --out /proc/nowhere"), {"/proc/nowhere"});
 }
 
 TEST_F(BadInput, FullDisk) {
