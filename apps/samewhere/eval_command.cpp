@@ -7,14 +7,32 @@
 
 namespace samewhere::app {
 
+namespace {
+
+struct EvalCommand {
+  std::string folder;
+  std::string walk;
+};
+
+}  // namespace
+
 void add_eval_command(CLI::App& app) {
-  auto folder = std::make_shared<std::string>();
+  auto command = std::make_shared<EvalCommand>();
   CLI::App* sub =
       app.add_subcommand("eval", "Measure a finished run against the truth of its source");
-  sub->add_option("RUN", *folder, "folder that `samewhere run` or `samewhere loops` wrote")
+  sub->add_option("RUN", command->folder, "folder that `samewhere run` or `samewhere loops` wrote")
       ->required();
-  sub->footer("Example:\n  samewhere eval runs/office-loop");
-  sub->callback([folder] { print_figures(pipeline::evaluate_folder(*folder)); });
+  sub->add_option(
+      "--walk", command->walk,
+      "count accepted loops between floors; a list `image floor clip`, as the run's source");
+  sub->footer(
+      "Examples:\n"
+      "  samewhere eval runs/office-loop\n"
+      "  samewhere eval runs/walk.txt --walk tower/walk.txt");
+  sub->callback([command] {
+    print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder)
+                                        : pipeline::evaluate_walk(command->folder, command->walk));
+  });
 }
 
 }  // namespace samewhere::app

@@ -8,6 +8,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
+#include <samewhere/evaluate/tower_walk.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
@@ -116,6 +117,20 @@ std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder)
     return figures_of(evaluate_recognition(findings, truth));
   }
   return figures_of(evaluate_slam(read_slam_findings(folder), truth));
+}
+
+std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,
+                                          const std::filesystem::path& walk) {
+  std::vector<evaluate::Match> accepted;
+  for (const auto& pair : read_pairs(folder / "accepted.txt")) {
+    accepted.push_back(
+        {static_cast<int>(pair.query.index()), static_cast<int>(pair.match.index()), pair.score});
+  }
+  const evaluate::WalkCounts counts = count_walk(evaluate::read_walk(walk), accepted);
+  return {{"loops accepted", std::to_string(counts.num_loops)},
+          {"of these between two floors (wrong)", std::to_string(counts.num_wrong)},
+          {"on one floor, of these in one clip",
+           fmt::format("{}, {}", counts.num_same_floor, counts.num_same_clip)}};
 }
 
 }  // namespace samewhere::pipeline

@@ -12,4 +12,10 @@ namespace samewhere::pipeline {
 // Throws InputError if a file is missing or broken, or if the source is no longer there.
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder);
 
+// The accepted loops of a recognition run over a walk through floors that look alike: how many join
+// two floors (evaluate/tower_walk.hpp). `walk` is the list of images with floor and clip. Throws
+// InputError.
+std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,
+                                          const std::filesystem::path& walk);
+
 }  // namespace samewhere::pipeline
