@@ -25,7 +25,7 @@ struct Config {
   double loop_sigma_rad = 0.01;
 };
 
-inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
   visit("min_similarity", config.min_similarity,
         {.help = "descriptors less similar (NCC) are refused", .min = -1.0, .max = 1.0});
   visit("pause_frames", config.pause_frames,
@@ -52,6 +52,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .max = 100.0});
   visit("max_disagreement_rad", config.max_disagreement_rad,
         {.help = "the same, radians", .min = 0.001, .max = 3.2});
+}
+
+inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
   visit("max_error_px", config.max_error_px,
         {.help = "reprojection error of a RANSAC inlier", .min = 0.1, .max = 50.0});
   visit("refine_radius_px", config.refine_radius_px,
@@ -69,6 +72,11 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
   visit("loop_sigma_rad", config.loop_sigma_rad,
         {.help = "standard deviation of a loop's rotation, radians", .min = 1e-4, .max = 3.0});
+}
+
+inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit_thresholds(config, visit);
+  visit_measurement(config, visit);
 }
 
 }  // namespace samewhere::verify
