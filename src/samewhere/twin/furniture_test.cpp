@@ -14,8 +14,8 @@ std::vector<Rectangle> faces_with(const std::vector<Rectangle>& rectangles, Fini
                                   const Eigen::Vector2f& size_m) {
   std::vector<Rectangle> found;
   for (const auto& r : rectangles) {
-    if (r.axis == 2 || r.material.finish != finish) continue;
-    if ((r.size_m() - size_m).norm() < 1e-3F) found.push_back(r);
+    if (std::abs(r.normal().z()) > 0.5F || r.material.finish != finish) continue;
+    if ((r.size_m - size_m).norm() < 1e-3F) found.push_back(r);
   }
   return found;
 }
@@ -28,7 +28,7 @@ std::vector<Rectangle> door_leaves(const std::vector<Rectangle>& rectangles) {
 Eigen::ArrayXf texture_of(const Rectangle& rectangle) {
   constexpr int kSide = 60;
   Eigen::ArrayXf values(kSide * kSide);
-  const Eigen::Vector2f step_m = rectangle.size_m() / kSide;
+  const Eigen::Vector2f step_m = rectangle.size_m / kSide;
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
       const TexturePoint point{(static_cast<float>(column) + 0.5F) * step_m.x(),
@@ -102,7 +102,7 @@ TEST(Posters, AreCopiesOfEachOtherAtSimilarityOneOnly) {
     std::vector<std::uint32_t> seeds;
     for (const auto& r : office_loop_surfaces(5, similarity)) {
       if (r.material.finish != Finish::kPaper) continue;
-      if (r.size_m().minCoeff() > 0.1F) seeds.push_back(r.material.pattern_seed);
+      if (r.size_m.minCoeff() > 0.1F) seeds.push_back(r.material.pattern_seed);
     }
     std::sort(seeds.begin(), seeds.end());
     const auto num_sheets = seeds.size();
@@ -118,7 +118,7 @@ TEST(Posters, AreCopiesOfEachOtherAtSimilarityOneOnly) {
 
 TEST(Texture, FadesWithDistanceToItsMean) {
   for (const Finish finish : {Finish::kWall, Finish::kCarpet, Finish::kCeiling, Finish::kWood}) {
-    Rectangle r{.axis = 0, .high_m = {4.0F, 2.6F}};
+    Rectangle r{.size_m = {4.0F, 2.6F}};
     r.material = {.finish = finish, .wear_seed = 11, .pattern_seed = 12};
     const auto deviation = [&](float footprint_m) {
       constexpr int kNumPoints = 400;

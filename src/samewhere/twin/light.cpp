@@ -37,14 +37,13 @@ std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
   std::vector<Emitter> emitters;
   for (const auto& r : rectangles) {
     if (!is_emitting(r.material)) continue;
-    const Eigen::Array2f num_pieces = (r.size_m().array() / kPiece_m).ceil();
-    const Eigen::Vector2f piece_m = r.size_m().array() / num_pieces;
+    const Eigen::Array2f num_pieces = (r.size_m.array() / kPiece_m).ceil();
+    const Eigen::Vector2f piece_m = r.size_m.array() / num_pieces;
     const Colour power =
         mean_reflectance(r.material) * (r.material.radiance * piece_m.prod() / kPi);
     for (float v = 0.5F; v < num_pieces.y(); v += 1.0F) {
       for (float u = 0.5F; u < num_pieces.x(); u += 1.0F) {
-        const Eigen::Vector3f position =
-            r.at(r.low_m + Eigen::Vector2f(u, v).cwiseProduct(piece_m));
+        const Eigen::Vector3f position = r.at(Eigen::Vector2f(u, v).cwiseProduct(piece_m));
         emitters.push_back({{position + kOffSurface_m * r.normal(), r.normal()}, power});
       }
     }
@@ -52,22 +51,22 @@ std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
   return emitters;
 }
 
-Colour light_from(const Emitter& emitter, const SurfacePoint& point, const RayTree& tree) {
+Colour light_from(const Emitter& emitter, const SurfacePoint& point, const RayScene& rays) {
   const Eigen::Vector3f to_emitter = emitter.at.position - point.position;
   const float squared_m2 = to_emitter.squaredNorm();
   const float cosines =
       point.normal.dot(to_emitter) * -emitter.at.normal.dot(to_emitter) / squared_m2;
   if (point.normal.dot(to_emitter) <= 0.0F || cosines <= 0.0F) return Colour::Zero();
   const float window = 1.0F - squared_m2 / (kEmitterRange_m * kEmitterRange_m);
-  if (window <= 0.0F || tree.is_blocked({point.position, to_emitter})) return Colour::Zero();
+  if (window <= 0.0F || rays.is_blocked({point.position, to_emitter})) return Colour::Zero();
   constexpr float kPieceSize_m2 = 0.02F;  // tames pieces very close by
   return emitter.power * (cosines * window / (squared_m2 + kPieceSize_m2));
 }
 
 Colour light_from_all(const std::vector<Emitter>& emitters, const SurfacePoint& point,
-                      const RayTree& tree) {
+                      const RayScene& rays) {
   Colour sum = Colour::Zero();
-  for (const auto& emitter : emitters) sum += light_from(emitter, point, tree);
+  for (const auto& emitter : emitters) sum += light_from(emitter, point, rays);
   return sum;
 }
 
@@ -88,9 +87,9 @@ std::vector<Eigen::Vector3f> gather_directions() {
 
 class Baker {
  public:
-  Baker(const std::vector<Rectangle>& rectangles, const RayTree& tree)
+  Baker(const std::vector<Rectangle>& rectangles, const RayScene& rays)
       : rectangles_(rectangles),
-        tree_(tree),
+        rays_(rays),
         emitters_(emitters_of(rectangles)),
         directions_(gather_directions()) {}
 
@@ -111,36 +110,34 @@ class Baker {
     return colours;
   }
 
-  Colour direct(const SurfacePoint& point) const { return light_from_all(emitters_, point, tree_); }
+  Colour direct(const SurfacePoint& point) const { return light_from_all(emitters_, point, rays_); }
 
   // Mean light that arrives from the surfaces around, lit as `light` says.
   Colour gathered(int rectangle, const SurfacePoint& point, const SurfaceColours& light) const {
     const Rectangle& r = rectangles_[static_cast<std::size_t>(rectangle)];
     Colour sum = Colour::Zero();
     for (const auto& around_z : directions_) {
-      Eigen::Vector3f direction;
-      direction[r.axis] = r.facing * around_z.z();
-      direction[r.first_axis()] = around_z.x();
-      direction[r.second_axis()] = around_z.y();
-      const auto hit = tree_.first_hit({point.position, direction});
+      const Eigen::Vector3f direction =
+          around_z.x() * r.right + around_z.y() * r.up + around_z.z() * point.normal;
+      const auto hit = rays_.first_hit({point.position, direction});
       if (!hit) continue;
       const Rectangle& seen = rectangles_[static_cast<std::size_t>(hit->rectangle)];
       if (is_emitting(seen.material)) continue;  // direct light already
       const Eigen::Vector3f position = point.position + hit->reach * direction;
-      sum += mean_reflectance(seen.material) * light.at(hit->rectangle, seen.on_plane(position));
+      sum += mean_reflectance(seen.material) * light.at(hit->rectangle, seen.right_up_m(position));
     }
     return sum / static_cast<float>(kNumGatherRays);
   }
 
  private:
-  SurfacePoint surface_point(int rectangle, const Eigen::Vector2f& on_plane) const {
+  SurfacePoint surface_point(int rectangle, const Eigen::Vector2f& right_up_m) const {
     const Rectangle& r = rectangles_[static_cast<std::size_t>(rectangle)];
-    return {r.at(on_plane) + kOffSurface_m * r.normal(), r.normal()};
+    return {r.at(right_up_m) + kOffSurface_m * r.normal(), r.normal()};
   }
 
   // Whether something stands on this point: straight ahead one then sees its back from within.
   bool covers(const SurfacePoint& point) const {
-    const auto hit = tree_.first_hit({point.position, point.normal});
+    const auto hit = rays_.first_hit({point.position, point.normal});
     if (!hit) return true;
     const Rectangle& seen = rectangles_[static_cast<std::size_t>(hit->rectangle)];
     return seen.normal().dot(point.normal) > 0.0F;
@@ -165,7 +162,7 @@ class Baker {
   static bool spread(SurfaceColours& colours, int r);
 
   const std::vector<Rectangle>& rectangles_;
-  const RayTree& tree_;
+  const RayScene& rays_;
   std::vector<Emitter> emitters_;
   std::vector<Eigen::Vector3f> directions_;
 };
@@ -204,13 +201,13 @@ bool Baker::spread(SurfaceColours& colours, int r) {
 
 }  // namespace
 
-SurfaceColours light_on(const std::vector<Rectangle>& rectangles, const RayTree& tree) {
-  const Baker baker(rectangles, tree);
+SurfaceColours light_on(const std::vector<Rectangle>& rectangles, const RayScene& rays) {
+  const Baker baker(rectangles, rays);
   const SurfaceColours direct =
       baker.fill([&](int, const SurfacePoint& p) { return baker.direct(p); });
   return baker.fill([&](int r, const SurfacePoint& p) -> Colour {
     const Rectangle& rectangle = rectangles[static_cast<std::size_t>(r)];
-    return direct.at(r, rectangle.on_plane(p.position)) +
+    return direct.at(r, rectangle.right_up_m(p.position)) +
            kAllBounces * baker.gathered(r, p, direct);
   });
 }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <samewhere/twin/ray_tree.hpp>
+#include <samewhere/twin/ray_scene.hpp>
 #include <samewhere/twin/surface.hpp>
 #include <samewhere/twin/surface_colours.hpp>
 
@@ -11,6 +11,6 @@ namespace samewhere::twin {
 // How much light falls on every surface: from lamps and windows with soft shadows, and by way of
 // the other surfaces (one bounce gathered, the further ones estimated from it). As irradiance over
 // pi: times the reflectance it is the light that a matt surface sends back.
-SurfaceColours light_on(const std::vector<Rectangle>& rectangles, const RayTree& tree);
+SurfaceColours light_on(const std::vector<Rectangle>& rectangles, const RayScene& rays);
 
 }  // namespace samewhere::twin

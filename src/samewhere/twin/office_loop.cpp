@@ -63,31 +63,37 @@ class Builder {
          {Eigen::Vector2f(inner.x(), -inner.y()), Eigen::Vector2f(outer.x(), inner.y())},
          {Eigen::Vector2f(-outer.x(), -inner.y()), Eigen::Vector2f(-inner.x(), inner.y())}}};
     for (const auto& [low, high] : legs) {
-      rectangles_.push_back({.axis = 2,
-                             .plane_m = 0.0F,
-                             .facing = 1.0F,
-                             .low_m = low,
-                             .high_m = high,
+      const Eigen::Vector2f size = high - low;
+      rectangles_.push_back({.corner_m = {low.x(), low.y(), 0.0F},
+                             .right = Eigen::Vector3f::UnitX(),
+                             .up = Eigen::Vector3f::UnitY(),
+                             .size_m = size,
+                             .pattern_m = low,
                              .material = carpet});
-      rectangles_.push_back({.axis = 2,
-                             .plane_m = kHeight_m,
-                             .facing = -1.0F,
-                             .low_m = low,
-                             .high_m = high,
+      rectangles_.push_back({.corner_m = {low.x(), high.y(), kHeight_m},
+                             .right = Eigen::Vector3f::UnitX(),
+                             .up = -Eigen::Vector3f::UnitY(),
+                             .size_m = size,
+                             .pattern_m = low,
                              .material = board});
     }
   }
 
   void add_wall(const Wall& wall) {
     const WallSide& side = wall.side;
-    rectangles_.push_back(
-        {.axis = side.face.axis,
-         .plane_m = side.plane_m,
-         .facing = side.face.facing,
-         .low_m = {side.low_m, 0.0F},
-         .high_m = {side.high_m, kHeight_m},
-         .material = furnisher_.fresh(Finish::kWall, colour_of_srgb(0.86F, 0.84F, 0.78F),
-                                      colour_of_srgb(0.66F, 0.70F, 0.70F))});
+    Eigen::Vector3f low(0.0F, 0.0F, 0.0F);
+    Eigen::Vector3f high(0.0F, 0.0F, kHeight_m);
+    low[side.face.axis] = high[side.face.axis] = side.plane_m;
+    low[1 - side.face.axis] = side.low_m;
+    high[1 - side.face.axis] = side.high_m;
+    const Material paint = furnisher_.fresh(Finish::kWall, colour_of_srgb(0.86F, 0.84F, 0.78F),
+                                            colour_of_srgb(0.66F, 0.70F, 0.70F));
+    for (const auto& face : faces_of({low, high}, side.face, {paint, paint})) {
+      if (face.size_m.minCoeff() > 0.0F &&
+          face.normal()[side.face.axis] * side.face.facing > 0.5F) {
+        rectangles_.push_back(face);
+      }
+    }
     const auto num_bays = static_cast<float>(wall.bays.size());
     const float pitch_m = (side.high_m - side.low_m) / num_bays;
     for (std::size_t i = 0; i < wall.bays.size(); ++i) {

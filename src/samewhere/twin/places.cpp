@@ -69,8 +69,8 @@ struct Sight {
 
 class Judge {
  public:
-  Judge(const Building& building, const core::Camera& camera)
-      : building_(building), raster_(camera), ask_(ask_directions(camera)) {
+  Judge(const Building& building, const RayScene& rays, const core::Camera& camera)
+      : building_(building), rays_(rays), raster_(camera), ask_(ask_directions(camera)) {
     const core::PinholeRadtan& c = geometry::pinhole(camera);
     for (int cell = 0; cell < raster_.num_cells(); ++cell) {
       const Vector2f centre = raster_.centre_of(cell);
@@ -87,14 +87,14 @@ class Judge {
                 .position = world_from_camera.translation.cast<float>()};
     for (const auto& direction : ask_) {
       const Ray ray{sight.position, world_from_eye * direction};
-      const auto hit = building_.tree.first_hit(ray);
+      const auto hit = rays_.first_hit(ray);
       if (hit) sight.points.push_back({ray.origin + hit->reach * ray.direction, hit->rectangle});
     }
     for (int cell = 0; cell < raster_.num_cells(); ++cell) {
       std::optional<Hit> hit;
       if (is_in_picture_[static_cast<std::size_t>(cell)]) {
         const Vector2f centre = raster_.centre_of(cell);
-        hit = building_.tree.first_hit({sight.position, world_from_eye * centre.homogeneous()});
+        hit = rays_.first_hit({sight.position, world_from_eye * centre.homogeneous()});
       }
       sight.surface_of_cell.push_back(hit ? hit->rectangle : kNowhere);
     }
@@ -149,11 +149,12 @@ class Judge {
     if (surface == point.surface) return true;
     // how far away that surface is on the way to the point: on its plane, not at the cell's centre
     const Rectangle& r = building_.rectangles[static_cast<std::size_t>(surface)];
-    const float ratio = (r.plane_m - sight.position[r.axis]) / to_point[r.axis];
+    const float ratio = reach_of_plane({sight.position, to_point}, r);
     return std::abs(ratio - 1.0F) * in_camera.z() <= 0.05F + 0.04F * in_camera.z();
   }
 
   const Building& building_;
+  const RayScene& rays_;
   Raster raster_;
   std::vector<Vector3f> ask_;
   std::vector<bool> is_in_picture_;
@@ -162,8 +163,8 @@ class Judge {
 }  // namespace
 
 core::PlaceTruthMatrix places_of(const core::Trajectory& walk, const Building& building,
-                                 const core::Camera& camera) {
-  const Judge judge(building, camera);
+                                 const RayScene& rays, const core::Camera& camera) {
+  const Judge judge(building, rays, camera);
   std::vector<Sight> sights;
   sights.reserve(walk.size());
   for (const auto& pose : walk) sights.push_back(judge.look(pose.world_from_camera));

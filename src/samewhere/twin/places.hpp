@@ -2,7 +2,8 @@
 
 #include <samewhere/core/rig.hpp>
 #include <samewhere/core/truth.hpp>
-#include <samewhere/twin/renderer.hpp>
+#include <samewhere/twin/building.hpp>
+#include <samewhere/twin/ray_scene.hpp>
 
 namespace samewhere::twin {
 
@@ -11,6 +12,6 @@ namespace samewhere::twin {
 // picture and the surface that m sees there is as far away, within 5 cm + 4 %. Same: at least 0.3
 // both ways and viewing directions within 45 degrees; different: below 0.05 both ways; else near.
 core::PlaceTruthMatrix places_of(const core::Trajectory& walk, const Building& building,
-                                 const core::Camera& camera);
+                                 const RayScene& rays, const core::Camera& camera);
 
 }  // namespace samewhere::twin

@@ -55,13 +55,12 @@ core::Rigid3 looking_along_x(double x_m, double turned_rad) {
   return {turn * Eigen::Quaterniond(world_from_camera), {x_m, 0.0, 0.0}};
 }
 
-// A wide wall 2 m ahead, across x.
-Building one_wall() {
-  return Building({{.axis = 0,
-                    .plane_m = 2.0F,
-                    .facing = -1.0F,
-                    .low_m = {-50.0F, -50.0F},
-                    .high_m = {50.0F, 50.0F}}});
+// A wide wall across x, seen from x = 0.
+Rectangle wall_at(float x_m) {
+  return {.corner_m = {x_m, 50.0F, -50.0F},
+          .right = -Eigen::Vector3f::UnitY(),
+          .up = Eigen::Vector3f::UnitZ(),
+          .size_m = {100.0F, 100.0F}};
 }
 
 PlaceTruth places_of_two(const core::Rigid3& first, const core::Rigid3& second) {
@@ -71,7 +70,9 @@ PlaceTruth places_of_two(const core::Rigid3& first, const core::Rigid3& second) 
                                    .fy_px = 525.0,
                                    .cx_px = 319.5,
                                    .cy_px = 239.5};
-  return places_of({{0.0, first}, {1.0, second}}, one_wall(), camera).at(0, 1);
+  const Building building{.rectangles = {wall_at(2.0F)}};
+  const RayScene rays(building.rectangles);
+  return places_of({{0.0, first}, {1.0, second}}, building, rays, camera).at(0, 1);
 }
 
 TEST(Places, FollowFromTheSharedSurface) {
@@ -88,18 +89,16 @@ TEST(Places, FollowFromTheSharedSurface) {
 
 TEST(Places, AWallBetweenHidesAPlace) {
   // b stands behind the wall that a looks at, and looks the same way onto another one
-  auto surfaces = one_wall().rectangles;
-  surfaces.push_back(surfaces.front());
-  surfaces.back().plane_m = 5.0F;
   const core::PinholeRadtan camera{.width_px = 640,
                                    .height_px = 480,
                                    .fx_px = 525.0,
                                    .fy_px = 525.0,
                                    .cx_px = 319.5,
                                    .cy_px = 239.5};
-  const Building building(surfaces);
+  const Building building{.rectangles = {wall_at(2.0F), wall_at(5.0F)}};
+  const RayScene rays(building.rectangles);
   const auto places = places_of(
-      {{0.0, looking_along_x(0.0, 0.0)}, {1.0, looking_along_x(2.5, 0.0)}}, building, camera);
+      {{0.0, looking_along_x(0.0, 0.0)}, {1.0, looking_along_x(2.5, 0.0)}}, building, rays, camera);
   EXPECT_EQ(places.at(0, 1), PlaceTruth::kDifferent);
 }
 

@@ -99,7 +99,7 @@ Colour picture(const TexturePoint& p, const Eigen::Vector2f& size_m, std::uint32
 
 Colour door_plate(const Rectangle& plate, const TexturePoint& p) {
   const Material& m = plate.material;
-  const Eigen::Vector2f size_m = plate.size_m();
+  const Eigen::Vector2f size_m = plate.size_m;
   const float dot_m = 0.06F * size_m.x();
   const TexturePoint in_number{p.u_m - 0.1F * size_m.x(), p.v_m - 0.58F * size_m.y(),
                                p.footprint_m};
@@ -112,7 +112,7 @@ Colour door_plate(const Rectangle& plate, const TexturePoint& p) {
 
 Colour poster(const Rectangle& paper, const TexturePoint& p) {
   const Material& m = paper.material;
-  const Eigen::Vector2f size_m = paper.size_m();
+  const Eigen::Vector2f size_m = paper.size_m;
   const Layout layout(m.pattern_seed);
   const float height_m = size_m.y();
   const Eigen::Vector2f margin_m = Eigen::Vector2f::Constant(0.07F * size_m.x());
@@ -137,7 +137,7 @@ Colour poster(const Rectangle& paper, const TexturePoint& p) {
 
 Colour pictogram(const Rectangle& sign, const TexturePoint& p) {
   const Material& m = sign.material;
-  const Eigen::Vector2f size_m = sign.size_m();
+  const Eigen::Vector2f size_m = sign.size_m;
   const Eigen::Vector2f border_m = 0.06F * size_m;
   const float frame = 1.0F - in_frame(p, border_m, size_m - border_m);
   // an arrow head on the right, bars on the left

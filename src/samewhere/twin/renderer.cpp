@@ -34,9 +34,10 @@ struct Renderer::Sample {
   int surface = -1;
 };
 
-Renderer::Renderer(const Building& building, const core::Camera& camera)
+Renderer::Renderer(const Building& building, const RayScene& rays, const core::Camera& camera)
     : building_(building),
-      light_(light_on(building.rectangles, building.tree)),
+      rays_(rays),
+      light_(light_on(building.rectangles, rays)),
       width_px_(geometry::pinhole(camera).width_px),
       height_px_(geometry::pinhole(camera).height_px),
       pixel_rad_(static_cast<float>(1.0 / geometry::focal_px(camera))) {
@@ -61,19 +62,18 @@ Eigen::Vector3f Renderer::ray(float x_px, float y_px) const {
 
 Renderer::Sample Renderer::sample(const Eye& eye, const Eigen::Vector3f& ray_in_camera) const {
   const Ray ray{eye.position, eye.world_from_camera * ray_in_camera};
-  const std::optional<Hit> hit = building_.tree.first_hit(ray);
+  const std::optional<Hit> hit = rays_.first_hit(ray);
   if (!hit) return {};
   const Rectangle& rectangle = building_.rectangles[static_cast<std::size_t>(hit->rectangle)];
-  const Eigen::Vector2f on_plane = rectangle.on_plane(ray.origin + hit->reach * ray.direction);
+  const Eigen::Vector2f uv = rectangle.right_up_m(ray.origin + hit->reach * ray.direction);
   const float incidence =
-      std::abs(ray.direction[rectangle.axis]) / std::sqrt(ray.direction.squaredNorm());
+      std::abs(ray.direction.dot(rectangle.normal())) / std::sqrt(ray.direction.squaredNorm());
   const float stretch = std::min(1.0F / std::sqrt(incidence), kMaxStretch);
-  const Eigen::Vector2f uv = texture_coordinates(rectangle, on_plane);
   const TexturePoint point{uv.x(), uv.y(), hit->reach * pixel_rad_ * stretch};
   const Colour shade = reflectance(rectangle, point);
   const Colour light = is_emitting(rectangle.material)
                            ? Colour::Constant(rectangle.material.radiance)
-                           : light_.at(hit->rectangle, on_plane);
+                           : light_.at(hit->rectangle, uv);
   return {shade * light, hit->reach, incidence, hit->rectangle};
 }
 

@@ -6,20 +6,12 @@
 
 #include <samewhere/core/rig.hpp>
 #include <samewhere/core/rigid3.hpp>
+#include <samewhere/twin/building.hpp>
 #include <samewhere/twin/light.hpp>
-#include <samewhere/twin/ray_tree.hpp>
+#include <samewhere/twin/ray_scene.hpp>
 #include <samewhere/twin/surface.hpp>
 
 namespace samewhere::twin {
-
-// Surfaces with what is needed to find them by rays.
-struct Building {
-  explicit Building(std::vector<Rectangle> surfaces)
-      : rectangles(std::move(surfaces)), tree(rectangles) {}
-
-  std::vector<Rectangle> rectangles;
-  RayTree tree;
-};
 
 // What a perfect camera sees; pictures of the camera's size.
 struct View {
@@ -34,9 +26,9 @@ struct View {
 // of the pixel each of them covers.
 class Renderer {
  public:
-  // The building must outlive the renderer. Computes the light on all surfaces: a fraction of a
-  // second for a floor.
-  Renderer(const Building& building, const core::Camera& camera);
+  // Building and rays must outlive the renderer. Computes the light on all surfaces: a fraction of
+  // a second for a floor.
+  Renderer(const Building& building, const RayScene& rays, const core::Camera& camera);
 
   View render(const core::Rigid3& world_from_camera) const;
 
@@ -51,6 +43,7 @@ class Renderer {
   Eigen::Vector3f ray(float x_px, float y_px) const;
 
   const Building& building_;
+  const RayScene& rays_;
   SurfaceColours light_;
   int width_px_ = 0;
   int height_px_ = 0;

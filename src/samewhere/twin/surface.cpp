@@ -8,23 +8,29 @@ Colour colour_of_srgb(float red, float green, float blue) {
   return {std::pow(blue, 2.2F), std::pow(green, 2.2F), std::pow(red, 2.2F)};
 }
 
-Eigen::Vector3f Rectangle::at(const Eigen::Vector2f& on_plane) const {
-  Eigen::Vector3f point;
-  point[axis] = plane_m;
-  point[first_axis()] = on_plane.x();
-  point[second_axis()] = on_plane.y();
-  return point;
+namespace {
+
+// The rectangle between two corners of a box that looks along an axis.
+Rectangle face_of(const Box& box, const Face& face) {
+  const Eigen::Vector3f normal = face.facing * Eigen::Vector3f::Unit(face.axis);
+  // walls: up is up; level ones: right is the world's x
+  const bool is_level = face.axis == 2;
+  const Eigen::Vector3f right =
+      is_level ? Eigen::Vector3f::UnitX() : Eigen::Vector3f(Eigen::Vector3f::UnitZ().cross(normal));
+  const Eigen::Vector3f up = normal.cross(right);
+  const Eigen::Vector3f middle = 0.5F * (box.low_m + box.high_m);
+  const Eigen::Vector3f size_m = box.high_m - box.low_m;
+  const Eigen::Vector2f on_face(std::abs(right.dot(size_m)), std::abs(up.dot(size_m)));
+  Rectangle rectangle{.right = right, .up = up, .size_m = on_face};
+  rectangle.corner_m = middle + 0.5F * std::abs(normal.dot(size_m)) * normal -
+                       0.5F * on_face.x() * right - 0.5F * on_face.y() * up;
+  if (is_level) {
+    rectangle.pattern_m = {right.dot(rectangle.corner_m), up.dot(rectangle.corner_m)};
+  }
+  return rectangle;
 }
 
-Eigen::Vector2f texture_coordinates(const Rectangle& rectangle, const Eigen::Vector2f& on_plane) {
-  if (rectangle.axis == 2) return on_plane;
-  // seen from the side that the normal points to, +y is on the right of +x, and -x on the right
-  // of +y
-  const bool runs_up = (rectangle.axis == 0) == (rectangle.facing > 0.0F);
-  const float u =
-      runs_up ? on_plane.x() - rectangle.low_m.x() : rectangle.high_m.x() - on_plane.x();
-  return {u, on_plane.y() - rectangle.low_m.y()};
-}
+}  // namespace
 
 std::vector<Rectangle> faces_of(const Box& box, const Face& front, const Materials& materials) {
   std::vector<Rectangle> faces;
@@ -32,12 +38,8 @@ std::vector<Rectangle> faces_of(const Box& box, const Face& front, const Materia
     for (const float facing : {-1.0F, 1.0F}) {
       const bool is_along_front = axis == front.axis;
       if (is_along_front && facing != front.facing) continue;  // the back
-      Rectangle face{.axis = axis,
-                     .plane_m = facing > 0.0F ? box.high_m[axis] : box.low_m[axis],
-                     .facing = facing,
-                     .material = is_along_front ? materials.front : materials.sides};
-      face.low_m = face.on_plane(box.low_m);
-      face.high_m = face.on_plane(box.high_m);
+      Rectangle face = face_of(box, {axis, facing});
+      face.material = is_along_front ? materials.front : materials.sides;
       faces.push_back(face);
     }
   }

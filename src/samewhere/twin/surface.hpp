@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace samewhere::twin {
 
@@ -42,29 +43,28 @@ struct Material {
   float radiance = 0.0F;  // of emitting finishes
 };
 
-// An axis-aligned rectangle seen from one side. Metres; z is up.
+// A rectangle seen from one side. Metres; the world's z is up.
 struct Rectangle {
-  int axis = 2;  // of its normal: 0 x, 1 y, 2 z
-  float plane_m = 0.0F;
-  float facing = 1.0F;                              // +1 or -1: which way the normal points
-  Eigen::Vector2f low_m = Eigen::Vector2f::Zero();  // in the two other axes, in the order x y z
-  Eigen::Vector2f high_m = Eigen::Vector2f::Zero();
+  Eigen::Vector3f corner_m = Eigen::Vector3f::Zero();  // lower left, as seen
+  Eigen::Vector3f right = Eigen::Vector3f::UnitX();    // unit length
+  Eigen::Vector3f up = Eigen::Vector3f::UnitY();       // unit length, at right angles to `right`
+  Eigen::Vector2f size_m = Eigen::Vector2f::Ones();
+  // Added to what lies right of and above the corner, for patterns that run on from one rectangle
+  // to the next. On walls its y is the height of the corner above the floor.
+  Eigen::Vector2f pattern_m = Eigen::Vector2f::Zero();
+  int object = -1;  // index in Building::objects; -1: belongs to none
   Material material;
 
-  // The two axes of the plane.
-  int first_axis() const { return axis == 0 ? 1 : 0; }
-  int second_axis() const { return axis == 2 ? 1 : 2; }
-  Eigen::Vector2f size_m() const { return high_m - low_m; }
-  Eigen::Vector3f normal() const { return facing * Eigen::Vector3f::Unit(axis); }
-  Eigen::Vector2f on_plane(const Eigen::Vector3f& point) const {
-    return {point[first_axis()], point[second_axis()]};
+  // Towards whoever sees it.
+  Eigen::Vector3f normal() const { return right.cross(up); }
+  // `right_up_m`: right of and above the corner.
+  Eigen::Vector3f at(const Eigen::Vector2f& right_up_m) const {
+    return corner_m + right_up_m.x() * right + right_up_m.y() * up;
   }
-  Eigen::Vector3f at(const Eigen::Vector2f& on_plane) const;
+  Eigen::Vector2f right_up_m(const Eigen::Vector3f& point) const {
+    return {right.dot(point - corner_m), up.dot(point - corner_m)};
+  }
 };
-
-// Coordinates of the texture: for walls from the lower left corner as seen, so that print reads
-// from left to right; for floors and ceilings those of the world, so that patterns run on.
-Eigen::Vector2f texture_coordinates(const Rectangle& rectangle, const Eigen::Vector2f& on_plane);
 
 struct Box {
   Eigen::Vector3f low_m = Eigen::Vector3f::Zero();
@@ -82,7 +82,8 @@ struct Materials {
   Material sides;
 };
 
-// The five faces that are seen of a box that is fixed to something behind it.
+// The five faces that are seen of a box that is fixed to something behind it. Patterns of level
+// faces run on in the world's coordinates.
 std::vector<Rectangle> faces_of(const Box& box, const Face& front, const Materials& materials);
 
 }  // namespace samewhere::twin

@@ -16,11 +16,10 @@ SurfaceColours::SurfaceColours(const std::vector<Rectangle>& rectangles) {
     const auto points_along = [](float length_m) {
       return std::max(2, static_cast<int>(std::ceil(length_m / kGridStep_m)) + 1);
     };
-    Grid grid{.num_columns = points_along(r.size_m().x()),
-              .num_rows = points_along(r.size_m().y()),
+    Grid grid{.num_columns = points_along(r.size_m.x()),
+              .num_rows = points_along(r.size_m.y()),
               .first = num_values,
-              .low_m = r.low_m,
-              .high_m = r.high_m};
+              .size_m = r.size_m};
     num_values +=
         static_cast<std::size_t>(grid.num_columns) * static_cast<std::size_t>(grid.num_rows);
     grids_.push_back(grid);
@@ -36,16 +35,16 @@ Colour& SurfaceColours::value(int rectangle, int column, int row) {
 
 Eigen::Vector2f SurfaceColours::position(int rectangle, int column, int row) const {
   const Grid& g = grid(rectangle);
-  const Eigen::Vector2f size_m = g.high_m - g.low_m;
+  const Eigen::Vector2f& size_m = g.size_m;
   const Eigen::Vector2f ratio(static_cast<float>(column) / static_cast<float>(g.num_columns - 1),
                               static_cast<float>(row) / static_cast<float>(g.num_rows - 1));
   const Eigen::Vector2f margin_m = size_m.cwiseMin(0.05F) * 0.2F;
-  return g.low_m + margin_m + ratio.cwiseProduct(size_m - 2.0F * margin_m);
+  return margin_m + ratio.cwiseProduct(size_m - 2.0F * margin_m);
 }
 
-Colour SurfaceColours::at(int rectangle, const Eigen::Vector2f& on_plane) const {
+Colour SurfaceColours::at(int rectangle, const Eigen::Vector2f& right_up_m) const {
   const Grid& g = grid(rectangle);
-  const Eigen::Array2f ratio = (on_plane - g.low_m).array() / (g.high_m - g.low_m).array();
+  const Eigen::Array2f ratio = right_up_m.array() / g.size_m.array();
   const float x = ratio.x() * static_cast<float>(g.num_columns - 1);
   const float y = ratio.y() * static_cast<float>(g.num_rows - 1);
   const int column = std::clamp(static_cast<int>(x), 0, g.num_columns - 2);

@@ -11,13 +11,13 @@ class SurfaceColours {
  public:
   explicit SurfaceColours(const std::vector<Rectangle>& rectangles);
 
-  // `on_plane`: coordinates of a point of the rectangle in its plane, metres.
-  Colour at(int rectangle, const Eigen::Vector2f& on_plane) const;
+  // `right_up_m`: of a point of the rectangle, from its corner.
+  Colour at(int rectangle, const Eigen::Vector2f& right_up_m) const;
 
   int num_columns(int rectangle) const { return grid(rectangle).num_columns; }
   int num_rows(int rectangle) const { return grid(rectangle).num_rows; }
-  // Where a grid point lies in the plane: a little inside of the edges, not in a corner of the
-  // room.
+  // Where a grid point lies, from the corner of the rectangle: a little inside of the edges, not in
+  // a corner of the room.
   Eigen::Vector2f position(int rectangle, int column, int row) const;
   Colour& value(int rectangle, int column, int row);
 
@@ -26,8 +26,7 @@ class SurfaceColours {
     int num_columns = 2;
     int num_rows = 2;
     std::size_t first = 0;  // of its values
-    Eigen::Vector2f low_m = Eigen::Vector2f::Zero();
-    Eigen::Vector2f high_m = Eigen::Vector2f::Zero();
+    Eigen::Vector2f size_m = Eigen::Vector2f::Zero();
   };
   const Grid& grid(int rectangle) const { return grids_[static_cast<std::size_t>(rectangle)]; }
 

@@ -142,14 +142,13 @@ Colour cork(const Material& m, const TexturePoint& p) {
   return m.colour * (1.0F + grain);
 }
 
-// Lamps hang in ceilings, whose texture coordinates are those of the world.
 Colour lamp(const Rectangle& r, const TexturePoint& p) {
   constexpr float kFrame_m = 0.025F;
   constexpr float kRib_m = 0.1F;
-  const float u = std::min(p.u_m - r.low_m.x(), r.high_m.x() - p.u_m);
-  const float v = std::min(p.v_m - r.low_m.y(), r.high_m.y() - p.v_m);
+  const float u = std::min(p.u_m, r.size_m.x() - p.u_m);
+  const float v = std::min(p.v_m, r.size_m.y() - p.v_m);
   const float frame = 1.0F - beyond(std::min(u, v) - kFrame_m, p.footprint_m);
-  const float along_m = r.size_m().x() > r.size_m().y() ? u : v;
+  const float along_m = r.size_m.x() > r.size_m.y() ? u : v;
   const float rib = on_line(to_grid_line_m(along_m, kRib_m), 0.004F, p.footprint_m);
   return r.material.colour * ((1.0F - 0.75F * frame) * (1.0F - 0.35F * rib));
 }
@@ -164,7 +163,7 @@ Colour blinds(const Rectangle& r, const TexturePoint& p) {
   const float cord = on_line(to_grid_line_m(p.u_m + 0.2F, 0.55F), 0.004F, p.footprint_m);
   const float outside = 0.25F * octave_noise(p, {.wavelength_m = 0.6F, .count = 3, .gain = 0.6F},
                                              r.material.wear_seed);
-  const float sky = lerp(0.6F, 1.0F, clamp01(p.v_m / r.size_m().y()));
+  const float sky = lerp(0.6F, 1.0F, clamp01(p.v_m / r.size_m.y()));
   return r.material.colour * (slat * sky * (1.0F + outside) * (1.0F - 0.5F * cord));
 }
 
@@ -180,13 +179,15 @@ Colour grille(const Material& m, const TexturePoint& p) {
 
 Colour reflectance(const Rectangle& rectangle, const TexturePoint& point) {
   const Material& m = rectangle.material;
+  const TexturePoint in_pattern{point.u_m + rectangle.pattern_m.x(),
+                                point.v_m + rectangle.pattern_m.y(), point.footprint_m};
   switch (m.finish) {
     case Finish::kWall:
-      return wall(m, point);
+      return wall(m, in_pattern);
     case Finish::kCarpet:
-      return carpet(m, point);
+      return carpet(m, in_pattern);
     case Finish::kCeiling:
-      return ceiling(m, point);
+      return ceiling(m, in_pattern);
     case Finish::kWood:
       return wood(m, point);
     case Finish::kPaint:

@@ -33,7 +33,8 @@ class TwinSource : public core::Source {
         seed_(spec.seed),
         config_(config),
         rig_(twin_rig()),
-        building_(office_loop_surfaces(spec.seed, spec.similarity)),
+        building_{.rectangles = office_loop_surfaces(spec.seed, spec.similarity)},
+        rays_(building_.rectangles),
         walk_(first_poses(office_loop_walk(spec.seed), config.num_frames)) {}
 
   core::SourceInfo info() const override {
@@ -47,7 +48,7 @@ class TwinSource : public core::Source {
 
   std::optional<core::Frame> next() override {
     if (num_given_ == walk_.size()) return std::nullopt;
-    if (!renderer_) renderer_.emplace(building_, rig_->cameras.front());
+    if (!renderer_) renderer_.emplace(building_, rays_, rig_->cameras.front());
     const core::StampedPose& pose = walk_[num_given_];
     const View view = renderer_->render(pose.world_from_camera);
     core::Frame frame{.id = core::FrameId(num_given_),
@@ -65,7 +66,8 @@ class TwinSource : public core::Source {
   }
 
   core::Truth truth() const override {
-    return {.trajectory = walk_, .places = places_of(walk_, building_, rig_->cameras.front())};
+    return {.trajectory = walk_,
+            .places = places_of(walk_, building_, rays_, rig_->cameras.front())};
   }
 
  private:
@@ -82,6 +84,7 @@ class TwinSource : public core::Source {
   Config config_;
   std::shared_ptr<const core::Rig> rig_;
   Building building_;
+  RayScene rays_;
   core::Trajectory walk_;
   std::optional<Renderer> renderer_;
   std::size_t num_given_ = 0;

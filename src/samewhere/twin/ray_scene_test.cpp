@@ -2,7 +2,7 @@
 
 #include <samewhere/core/random.hpp>
 #include <samewhere/twin/office_loop.hpp>
-#include <samewhere/twin/ray_tree.hpp>
+#include <samewhere/twin/ray_scene.hpp>
 
 namespace samewhere::twin {
 namespace {
@@ -19,12 +19,13 @@ std::vector<Rectangle> random_rectangles(core::Random& random, int count) {
   std::vector<Rectangle> rectangles;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3f middle = random_point(random, {5.0F, 5.0F, 2.0F});
-    Rectangle r{.axis = static_cast<int>(random.index(3))};
-    r.plane_m = middle[r.axis];
-    const Eigen::Vector2f half(static_cast<float>(random.uniform(0.05, 1.5)),
-                               static_cast<float>(random.uniform(0.05, 1.5)));
-    r.low_m = r.on_plane(middle) - half;
-    r.high_m = r.on_plane(middle) + half;
+    const Eigen::Quaternionf turn =
+        Eigen::Quaternionf(Eigen::Vector4f(random_point(random, {1, 1, 1}).homogeneous()))
+            .normalized();
+    Rectangle r{.right = turn * Eigen::Vector3f::UnitX(), .up = turn * Eigen::Vector3f::UnitY()};
+    r.size_m = {static_cast<float>(random.uniform(0.1, 3.0)),
+                static_cast<float>(random.uniform(0.1, 3.0))};
+    r.corner_m = middle - 0.5F * r.size_m.x() * r.right - 0.5F * r.size_m.y() * r.up;
     rectangles.push_back(r);
   }
   return rectangles;
@@ -40,16 +41,16 @@ std::optional<Hit> nearest_of_all(const Ray& ray, const std::vector<Rectangle>& 
   return nearest;
 }
 
-TEST(RayTree, FindsWhatTryingEveryRectangleFinds) {
+TEST(RayScene, FindsWhatTryingEveryRectangleFinds) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     core::Random random(seed);
     const auto rectangles = random_rectangles(random, 1 + static_cast<int>(random.index(200)));
-    const RayTree tree(rectangles);
+    const RayScene rays(rectangles);
     for (int i = 0; i < 200; ++i) {
       const Ray ray{random_point(random, {6.0F, 6.0F, 3.0F}),
                     random_point(random, {1.0F, 1.0F, 1.0F})};
       const auto expected = nearest_of_all(ray, rectangles);
-      const auto found = tree.first_hit(ray);
+      const auto found = rays.first_hit(ray);
       ASSERT_EQ(found.has_value(), expected.has_value()) << "seed " << seed;
       if (!found) continue;
       ASSERT_EQ(found->rectangle, expected->rectangle) << "seed " << seed;
@@ -58,25 +59,44 @@ TEST(RayTree, FindsWhatTryingEveryRectangleFinds) {
   }
 }
 
-TEST(RayTree, AWayIsBlockedByWhatStandsBeforeItsEnd) {
-  Rectangle wall{.axis = 0, .plane_m = 2.0F, .low_m = {-1.0F, -1.0F}, .high_m = {1.0F, 1.0F}};
-  const RayTree tree({wall});
+TEST(RayScene, ManyRaysAtOnceMeetWhatEachMeetsAlone) {
+  core::Random random(5);
+  const auto rectangles = random_rectangles(random, 150);
+  const RayScene rays(rectangles);
+  const Eigen::Vector3f origin(0.3F, -0.2F, 0.1F);
+  std::vector<Eigen::Vector3f> directions;
+  for (int i = 0; i < 1003; ++i) directions.push_back(random_point(random, {1.0F, 1.0F, 1.0F}));
+  std::vector<Hit> hits(directions.size());
+  rays.first_hits(origin, directions, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const auto alone = rays.first_hit({origin, directions[i]});
+    ASSERT_EQ(hits[i].rectangle, alone ? alone->rectangle : -1) << "ray " << i;
+    ASSERT_EQ(hits[i].reach, alone ? alone->reach : 0.0F) << "ray " << i;
+  }
+}
+
+TEST(RayScene, AWayIsBlockedByWhatStandsBeforeItsEnd) {
+  const std::vector<Rectangle> walls{{.corner_m = {2.0F, -1.0F, -1.0F},
+                                      .right = Eigen::Vector3f::UnitY(),
+                                      .up = Eigen::Vector3f::UnitZ(),
+                                      .size_m = {2.0F, 2.0F}}};
+  const RayScene rays(walls);
   const Eigen::Vector3f origin = Eigen::Vector3f::Zero();
-  EXPECT_TRUE(tree.is_blocked({origin, {3.0F, 0.0F, 0.0F}}));
-  EXPECT_FALSE(tree.is_blocked({origin, {1.5F, 0.0F, 0.0F}}));
-  EXPECT_FALSE(tree.is_blocked({origin, {2.0F, 0.0F, 0.0F}}));  // ends on it
-  EXPECT_FALSE(tree.is_blocked({origin, {-3.0F, 0.0F, 0.0F}}));
-  EXPECT_FALSE(tree.is_blocked({origin, {3.0F, 2.0F, 0.0F}}));
+  EXPECT_TRUE(rays.is_blocked({origin, {3.0F, 0.0F, 0.0F}}));
+  EXPECT_FALSE(rays.is_blocked({origin, {1.5F, 0.0F, 0.0F}}));
+  EXPECT_FALSE(rays.is_blocked({origin, {2.0F, 0.0F, 0.0F}}));  // ends on it
+  EXPECT_FALSE(rays.is_blocked({origin, {-3.0F, 0.0F, 0.0F}}));
+  EXPECT_FALSE(rays.is_blocked({origin, {3.0F, 2.0F, 0.0F}}));
 }
 
 TEST(OfficeLoop, NoRayEscapes) {
   const auto rectangles = office_loop_surfaces(3, 0.5);
-  const RayTree tree(rectangles);
+  const RayScene rays(rectangles);
   core::Random random(7);
   for (int i = 0; i < 20000; ++i) {
     const Ray ray{{static_cast<float>(random.uniform(-6.0, 6.0)), -4.0F, 1.5F},
                   random_point(random, {1.0F, 1.0F, 1.0F})};
-    ASSERT_TRUE(tree.first_hit(ray).has_value()) << "ray " << i;
+    ASSERT_TRUE(rays.first_hit(ray).has_value()) << "ray " << i;
   }
 }
 
