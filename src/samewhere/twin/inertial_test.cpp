@@ -30,16 +30,21 @@ class InertialUnit : public testing::TestWithParam<Carrier> {
 
 TEST_P(InertialUnit, CleanSamplesLeadToTheTrueMotion) {
   const InertialNoise none = InertialNoise::none();
-  const auto samples = inertial_samples(motion_, none, 1);
-  for (std::size_t k = 0; k + 200 < samples.size(); k += 50) {
-    const InertialState begin = true_state(motion_, samples[k].stamp_s, {});
-    const double until_s = samples[k + 200].stamp_s;
-    const InertialState end = integrated(begin, samples, none, until_s);
-    const core::Vector6d error = pose_error(end.world_from_body, motion_.world_from_body(until_s));
-    EXPECT_LT(error.head<3>().norm(), 1e-3) << "from " << begin.stamp_s << " s";
-    EXPECT_LT(error.tail<3>().norm(), 0.01 * kDegree_rad) << "from " << begin.stamp_s << " s";
-    EXPECT_EQ(end.pose_sigma().norm(), 0.0);
-    EXPECT_NEAR(end.stamp_s, until_s, 1e-9);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Motion motion(tour(GetParam()), seed);
+    const auto samples = inertial_samples(motion, none, 1);
+    for (std::size_t k = 0; k + 200 < samples.size(); k += 170) {
+      SCOPED_TRACE(testing::Message()
+                   << "seed " << seed << ", from " << samples[k].stamp_s << " s");
+      const InertialState begin = true_state(motion, samples[k].stamp_s, {});
+      const double until_s = samples[k + 200].stamp_s;
+      const InertialState end = integrated(begin, samples, none, until_s);
+      const core::Vector6d error = pose_error(end.world_from_body, motion.world_from_body(until_s));
+      EXPECT_LT(error.head<3>().norm(), 1e-3);
+      EXPECT_LT(error.tail<3>().norm(), 0.01 * kDegree_rad);
+      EXPECT_EQ(end.pose_sigma().norm(), 0.0);
+      EXPECT_NEAR(end.stamp_s, until_s, 1e-9);
+    }
   }
 }
 

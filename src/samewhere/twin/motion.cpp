@@ -49,7 +49,8 @@ struct Motion::Angles {
   Jet yaw, pitch, roll;
 };
 
-Motion::Motion(const Route& route, std::uint64_t seed) : camera_height_m_(route.camera_height_m) {
+Motion::Motion(const Route& route, std::uint64_t seed)
+    : carrier_(route.carrier), camera_height_m_(route.camera_height_m) {
   core::require(std::isfinite(camera_height_m_), "a route's camera has a finite height");
   core::Random random(core::seed_of(seed, "twin.motion", 0));
   shake_ = camera_shake(route.carrier, random);

@@ -23,6 +23,7 @@ class Motion {
   // Throws ContractError for a route that cannot be walked (drive.hpp).
   Motion(const Route& route, std::uint64_t seed);
 
+  Carrier carrier() const { return carrier_; }
   double duration_s() const { return drive_.duration_s; }
   // At any finite stamp; before 0 and after the end the carrier stands.
   core::Rigid3 world_from_body(double stamp_s) const;
@@ -48,6 +49,7 @@ class Motion {
   Position position_at(double stamp_s) const;
   Angles angles_at(double stamp_s) const;
 
+  Carrier carrier_;
   double camera_height_m_;
   CameraShake shake_;
   Drive drive_;

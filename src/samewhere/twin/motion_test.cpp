@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,11 +33,11 @@ Route rectangle(Carrier carrier) {
 
 // A bit of everything.
 Route varied_route(Carrier carrier) {
-  return route_along(carrier,
-                     {walk_to(6, 0), walk_to(6, 5), walk_to(10, 6, 1.5), walk_to(12, 6, 1.5),
-                      Stand{1.0}, TurnTo{kPi}, walk_to(12, 2, 1.5), walk_to(12.4, 1.5, 1.5),
-                      walk_to(12, 2, 1.5), Darken{2.0}, TurnTo{-1.0}, walk_to(12, 2, 4.5),
-                      walk_to(15, 2, 4.5)});
+  return route_along(
+      carrier,
+      {walk_to(6, 0), walk_to(6, 5), walk_to(10, 6, 1.5), walk_to(12, 6, 1.5), Stand{1.0},
+       TurnTo{kPi}, walk_to(12, 2, 1.5), walk_to(12.4, 1.5, 1.5), walk_to(12, 2, 1.5), Darken{2.0},
+       TurnTo{-1.0}, walk_to(12, 2, 4.5), walk_to(15, 2, 4.5), walk_to(15, 2.1, 4.5)});
 }
 
 Eigen::Vector3d forward_of(const core::Rigid3& world_from_body) {
@@ -84,7 +85,7 @@ TEST_P(CarriedCamera, NeverJumps) {
     const core::Rigid3 next = motion.world_from_body(t);
     ASSERT_LT((next.translation - pose.translation).norm(), 1.7 * kStep_s) << t << " s";
     ASSERT_LT(core::angle_rad(pose.rotation.conjugate() * next.rotation),
-              110.0 * kDegree_rad * kStep_s)
+              95.0 * kDegree_rad * kStep_s)
         << t << " s";
     ASSERT_LT((motion.acceleration_m_s2(t) - acceleration_m_s2).norm(), 0.8) << t << " s";
     ASSERT_LT(motion.acceleration_m_s2(t).norm(), 9.0) << t << " s";
@@ -96,8 +97,7 @@ TEST_P(CarriedCamera, NeverJumps) {
 TEST_P(CarriedCamera, StaysClearOfTheWallsOfACorridor) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     for (const auto& pose : Motion(rectangle(GetParam()), seed).frames(15.0)) {
-      const Eigen::Vector3d p =
-          pose.world_from_camera.translation - Eigen::Vector3d(6.0, 4.0, 0.0);
+      const Eigen::Vector3d p = pose.world_from_camera.translation - Eigen::Vector3d(6.0, 4.0, 0.0);
       const double to_outside_m = std::min(7.0 - std::abs(p.x()), 5.0 - std::abs(p.y()));
       const double from_block_m = std::max(std::abs(p.x()) - 5.0, std::abs(p.y()) - 3.0);
       ASSERT_GT(to_outside_m, 0.5) << "seed " << seed << ", " << pose.stamp_s << " s";
@@ -125,9 +125,9 @@ TEST_P(CarriedCamera, StaysNearTheLinesOfAnyRoute) {
     for (const auto& pose : Motion(route_along(GetParam(), steps), seed).frames(15.0)) {
       double nearest_m = 1e9;
       for (std::size_t i = 1; i < corners_m.size(); ++i) {
-        nearest_m = std::min(
-            nearest_m, distance_to_segment_m(pose.world_from_camera.translation.head<2>(),
-                                             corners_m[i - 1], corners_m[i]));
+        nearest_m =
+            std::min(nearest_m, distance_to_segment_m(pose.world_from_camera.translation.head<2>(),
+                                                      corners_m[i - 1], corners_m[i]));
       }
       ASSERT_LT(nearest_m, kMostFromRoute_m + 0.03)
           << "seed " << seed << ", " << pose.stamp_s << " s";
@@ -222,6 +222,23 @@ TEST(Motion, OnStairsTheHeightFollowsAndTheCameraLooksAlong) {
   EXPECT_NEAR(up_rad - level_rad, 0.5 * slope_rad, 0.05);
 }
 
+TEST(Motion, ALiftIsRiddenStandingAndLeftTheWayItWasEntered) {
+  const Motion motion(
+      route_along(Carrier::kWalker, {walk_to(3, 0), walk_to(3, 0, 9), walk_to(0, 0, 9)}), 2);
+  bool has_ridden = false;
+  for (double t = 0.0; t < motion.duration_s(); t += 0.01) {
+    const Eigen::Vector3d p = motion.floor_position_m(t);
+    if (p.z() < 0.1 || p.z() > 8.9) continue;
+    has_ridden = true;
+    EXPECT_LT((p.head<2>() - Eigen::Vector2d(3, 0)).norm(), 1e-3) << t << " s";
+    EXPECT_LT((motion.world_from_body(t).translation - p - Eigen::Vector3d(0, 0, 1.5)).norm(), 1e-3)
+        << t << " s";
+    EXPECT_NEAR(motion.heading_rad(t), 0.0, 1e-3) << t << " s";
+  }
+  EXPECT_TRUE(has_ridden);
+  EXPECT_NEAR(motion.heading_rad(motion.duration_s()), kPi, 1e-3);
+}
+
 TEST(Motion, ATurnOnTheSpotTakesTheShorterWayAndStays) {
   const auto turned_rad = [](double from_rad, double to_rad) {
     Route route = route_along(Carrier::kRobot, {TurnTo{to_rad}});
@@ -229,7 +246,7 @@ TEST(Motion, ATurnOnTheSpotTakesTheShorterWayAndStays) {
     const Motion motion(route, 1);
     for (const auto& pose : motion.frames(100.0)) {
       EXPECT_LT(pose.world_from_camera.translation.head<2>().norm(), 2e-3);
-      EXPECT_LT(motion.angular_velocity_rad_s(pose.stamp_s).norm(), 100.0 * kDegree_rad);
+      EXPECT_LT(motion.angular_velocity_rad_s(pose.stamp_s).norm(), 80.0 * kDegree_rad);
     }
     return motion.heading_rad(motion.duration_s() + 1.0) - from_rad;
   };

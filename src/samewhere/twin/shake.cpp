@@ -35,9 +35,9 @@ CameraShake walker_shake(core::Random& random) {
 
 // A cart on hard wheels whose camera pans slowly.
 CameraShake robot_shake(core::Random& random) {
-  constexpr double kVibration_hz = 12.0;
-  constexpr double kVibration_m = 0.3e-3;
-  constexpr double kVibration_rad = 0.15 * kDegree_rad;
+  constexpr double kVibration_hz = 11.5;
+  constexpr double kVibration_m = 0.2e-3;
+  constexpr double kVibration_rad = 0.1 * kDegree_rad;
   CameraShake shake;
   for (Waves* offset : {&shake.forward_m, &shake.left_m, &shake.up_m}) {
     *offset = random_waves(random, kVibration_m, kVibration_hz);
