@@ -55,7 +55,7 @@ class TwinSource : public core::Source {
                       .stamp_s = pose.stamp_s,
                       .name = fmt::format("{} frame {}", name_, num_given_),
                       .rig = rig_,
-                      .images = {photograph(view.radiance, gain(pose.stamp_s),
+                      .images = {photograph(view.radiance, exposure(pose.stamp_s),
                                             core::seed_of(seed_, "twin.picture", num_given_))}};
     frame.depth_m =
         config_.ideal_depth
@@ -71,12 +71,13 @@ class TwinSource : public core::Source {
   }
 
  private:
-  // Exposure over the usual one: follows the scene slowly, a little off in each frame.
-  float gain(double stamp_s) const {
+  // Follows the scene slowly, a little off in each frame.
+  Exposure exposure(double stamp_s) const {
     core::Random random(core::seed_of(seed_, "twin.exposure", num_given_));
-    constexpr double kUsual = 1.9;  // puts light walls at two thirds of the range
+    constexpr double kUsual_s = 0.01;  // puts light walls at two thirds of the range
     const double slow = 0.05 * std::sin(2.0 * std::numbers::pi * 0.07 * stamp_s);
-    return static_cast<float>(kUsual * (1.0 + slow + 0.008 * random.gaussian()));
+    return {.duration_s =
+                static_cast<float>(kUsual_s * (1.0 + slow + 0.008 * random.gaussian()))};
   }
 
   std::string name_;
