@@ -13,20 +13,20 @@ constexpr float kHalfWindow_m = 0.80F;
 constexpr float kMargin_m = 0.06F;  // between one thing and the next
 
 // Look-alikes are units of one kind. `what` keeps the draws for one purpose apart from others.
-Style style_of(const Site& site, int unit, std::string_view what) {
-  const int kind = site.plan.units()[static_cast<std::size_t>(unit)].kind;
-  const std::uint64_t seed = core::seed_of(site.spec.seed, what, 0);
+Style style_of(const Draft& draft, int unit, std::string_view what) {
+  const int kind = draft.plan.units()[static_cast<std::size_t>(unit)].kind;
+  const std::uint64_t seed = core::seed_of(draft.spec.seed, what, 0);
   return {.common_seed = core::seed_of(seed, "twin.kind", static_cast<std::uint64_t>(kind)),
           .own_seed = core::seed_of(seed, "twin.unit", static_cast<std::uint64_t>(unit)),
-          .similarity = site.spec.similarity,
-          .visit = site.visit.index};
+          .similarity = draft.spec.similarity,
+          .visit = draft.visit.index};
 }
 
 float length_of(const Wall& wall) { return (wall.to_m - wall.from_m).norm(); }
 
 }  // namespace
 
-Site site_of(const Spec& spec, const Plan& plan, const Visit& visit) {
+Draft draft_of(const Spec& spec, const Plan& plan, const Visit& visit) {
   return {spec, visit, plan, {.units = plan.units(), .areas = plan.areas()}};
 }
 
@@ -113,12 +113,12 @@ void add_filling(Furnisher& furnisher, Filling filling, const Place& place) {
 
 }  // namespace
 
-Dresser::Dresser(Site& site, int unit)
-    : plan_(site.plan),
+Dresser::Dresser(Draft& draft, int unit)
+    : plan_(draft.plan),
       unit_(unit),
-      style_(style_of(site, unit, "twin.layout")),
-      is_later_visit_(site.visit.index > 0),
-      furnisher_(site.building, unit, style_of(site, unit, "twin.looks"), site.visit.light) {
+      style_(style_of(draft, unit, "twin.layout")),
+      is_later_visit_(draft.visit.index > 0),
+      furnisher_(draft.building, unit, style_of(draft, unit, "twin.looks"), draft.visit.light) {
   add_surfaces();
 }
 

@@ -16,7 +16,7 @@ struct Visit {
 };
 
 // A building in the making, as it is at one visit.
-struct Site {
+struct Draft {
   Spec spec;
   Visit visit;
   Plan plan;
@@ -24,7 +24,7 @@ struct Site {
 };
 
 // The units and spaces of the plan, nothing to see yet.
-Site site_of(const Spec& spec, const Plan& plan, const Visit& visit = {});
+Draft draft_of(const Spec& spec, const Plan& plan, const Visit& visit = {});
 
 // What stands along one side of a space.
 enum class Use : std::uint8_t {
@@ -48,9 +48,9 @@ struct Dress {
 // where is half common, half own, as looks are (Style).
 class Dresser {
  public:
-  // Begins with floors, ceilings, walls, lintels and risers of all spaces of the unit. The site
+  // Begins with floors, ceilings, walls, lintels and risers of all spaces of the unit. The draft
   // must outlive it.
-  Dresser(Site& site, int unit);
+  Dresser(Draft& draft, int unit);
 
   // Doors are numbered on from here.
   void number_from(int number) { next_number_ = number; }

@@ -44,8 +44,8 @@ int add_stair(Plan& plan, int floor) {
   return unit;
 }
 
-void furnish_storey(Site& site, const Storey& storey, int floor) {
-  Dresser dresser(site, storey.unit);
+void furnish_storey(Draft& draft, const Storey& storey, int floor) {
+  Dresser dresser(draft, storey.unit);
   dresser.number_from(100 * (floor + 1) + 1);
   const auto doors = Use::kDoors;
   dresser.dress(storey.corridor,
@@ -83,13 +83,13 @@ World hotel(const Spec& spec) {
   std::vector<int> stairs;
   for (int floor = -1; floor < kNumFloors; ++floor) stairs.push_back(add_stair(plan, floor));
 
-  Site site = site_of(spec, plan);
+  Draft draft = draft_of(spec, plan);
   for (int floor = 0; floor < kNumFloors; ++floor) {
-    furnish_storey(site, storeys[static_cast<std::size_t>(floor)], floor);
+    furnish_storey(draft, storeys[static_cast<std::size_t>(floor)], floor);
   }
-  for (const int unit : stairs) Dresser(site, unit).dress_u_stair(kStairCorner_m, 0.0F);
+  for (const int unit : stairs) Dresser(draft, unit).dress_u_stair(kStairCorner_m, 0.0F);
 
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   Route& route = world.route;
   route.speed_m_s = 1.5;
   route.start_m = on_floor(kDown_m, -0.7, 0);

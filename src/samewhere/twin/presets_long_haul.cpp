@@ -49,8 +49,8 @@ Wing add_wing(Plan& plan, int floor, int index) {
   return wing;
 }
 
-void furnish_wing(Site& site, const Wing& wing) {
-  Dresser dresser(site, wing.unit);
+void furnish_wing(Draft& draft, const Wing& wing) {
+  Dresser dresser(draft, wing.unit);
   dresser.number_from(wing.first_number);
   const auto plain = Use::kPlain;
   dresser.dress(wing.south, {.sides = {Use::kDoors, plain, plain, plain}});
@@ -75,8 +75,8 @@ End add_end(Plan& plan, int floor, bool is_east) {
   return {unit, plan.add(space)};
 }
 
-void furnish_end(Site& site, const End& end, int floor) {
-  Dresser dresser(site, end.unit);
+void furnish_end(Draft& draft, const End& end, int floor) {
+  Dresser dresser(draft, end.unit);
   dresser.dress(end.space, {.sides = {Use::kWindows, Use::kPlain, Use::kWindows, Use::kPlain}});
   const Wall beside = dresser.wall_of(end.space, 1);
   dresser.furnisher().add_floor_number({beside, beside.from_m.y() < kStairY_m ? 5.3F : 0.3F},
@@ -221,13 +221,13 @@ World long_haul(const Spec& spec) {
   for (int floor = -1; floor < kNumFloors; ++floor) {
     for (const bool is_east : {false, true}) stairs.push_back(add_stair(plan, floor, is_east));
   }
-  Site site = site_of(spec, plan);
-  for (const Wing& wing : wings) furnish_wing(site, wing);
-  for (const auto& [end, floor] : ends) furnish_end(site, end, floor);
+  Draft draft = draft_of(spec, plan);
+  for (const Wing& wing : wings) furnish_wing(draft, wing);
+  for (const auto& [end, floor] : ends) furnish_end(draft, end, floor);
   for (const int unit : stairs) {
-    Dresser(site, unit).dress_u_stair(Eigen::Vector2f::Zero(), 0.0F);
+    Dresser(draft, unit).dress_u_stair(Eigen::Vector2f::Zero(), 0.0F);
   }
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   constexpr double kHalfHour_s = 1800.0;
   world.route = random_walk(spec.seed, kHalfHour_s);
   return world;

@@ -71,8 +71,8 @@ World office_loop(const Spec& spec) {
                                     .high_m = {-0.5F, 7.4F},
                                     .ground = FloorFinish::kWood});
 
-  Site site = site_of(spec, plan);
-  Dresser dresser(site, unit);
+  Draft draft = draft_of(spec, plan);
+  Dresser dresser(draft, unit);
   dresser.number_from(301);
   const auto doors = Use::kDoors;
   dresser.dress(ring.south, {.sides = {doors, Use::kPlain, doors, Use::kPlain}});
@@ -84,7 +84,7 @@ World office_loop(const Spec& spec) {
   dresser.furnish_office(outer_south, kSouth);
   dresser.furnish_lounge(outer_north, kNorth);
 
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   world.route.start_m = {-3.5, -4.0, 0.0};
   walk_around(world.route, {7.0, 4.0}, -3.5);
   walk(world.route, {{6.5, -4.0, 0.0}});
@@ -113,8 +113,8 @@ Ward add_ward(Plan& plan) {
 }
 
 Building furnish_ward(const Spec& spec, const Plan& plan, const Ward& ward, const Visit& visit) {
-  Site site = site_of(spec, plan, visit);
-  Dresser dresser(site, 0);
+  Draft draft = draft_of(spec, plan, visit);
+  Dresser dresser(draft, 0);
   dresser.number_from(101);
   const auto doors = Use::kDoors;
   const auto windows = Use::kWindows;
@@ -125,7 +125,7 @@ Building furnish_ward(const Spec& spec, const Plan& plan, const Ward& ward, cons
   dresser.furnish_office(ward.staff_room, kNorth);
   dresser.furnish_office(ward.office, kEast);
   dresser.furnish_lounge(ward.lounge, kNorth);
-  return std::move(site.building);
+  return std::move(draft.building);
 }
 
 }  // namespace

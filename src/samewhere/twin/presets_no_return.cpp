@@ -87,21 +87,21 @@ Walkway add_walkway(Plan& plan) {
 World no_return(const Spec& spec) {
   Plan plan;
   const Walkway way = add_walkway(plan);
-  Site site = site_of(spec, plan);
+  Draft draft = draft_of(spec, plan);
   int number = 101;
   for (const Part& bay : way.bays) {
-    Dresser dresser(site, bay.unit);
+    Dresser dresser(draft, bay.unit);
     dresser.number_from(number);
     dresser.dress(bay.space, {.sides = {Use::kDoors, Use::kBare, Use::kDoors, Use::kBare},
                               .pitch_m = kBay_m - kPortal_m});
     number += 2;
   }
   for (const Part& bend : way.bends) {
-    Dresser(site, bend.unit).dress(bend.space, {.has_pipes = true});
+    Dresser(draft, bend.unit).dress(bend.space, {.has_pipes = true});
   }
-  for (const Part& end : way.ends) Dresser(site, end.unit).dress(end.space, {});
+  for (const Part& end : way.ends) Dresser(draft, end.unit).dress(end.space, {});
 
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   world.route.start_m = way.points_m.front();
   walk(world.route, {way.points_m.begin() + 1, way.points_m.end()});
   return world;

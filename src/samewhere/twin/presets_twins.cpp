@@ -35,8 +35,8 @@ Half add_half(Plan& plan, int num_quarter_turns) {
   return half;
 }
 
-void furnish_half(Site& site, const Half& half, int first_number) {
-  Dresser dresser(site, half.unit);
+void furnish_half(Draft& draft, const Half& half, int first_number) {
+  Dresser dresser(draft, half.unit);
   dresser.number_from(first_number);
   dresser.dress(half.leg, {.sides = {Use::kDoors, Use::kPlain, Use::kDoors, Use::kPlain}});
   dresser.dress(half.connection, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kWindows},
@@ -58,11 +58,11 @@ World twin_corridors(const Spec& spec) {
   Plan plan;
   const Half first = add_half(plan, 0);
   const Half second = add_half(plan, 2);
-  Site site = site_of(spec, plan);
-  furnish_half(site, first, 101);
-  furnish_half(site, second, 151);
+  Draft draft = draft_of(spec, plan);
+  furnish_half(draft, first, 101);
+  furnish_half(draft, second, 151);
 
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   world.route.start_m = {-6.5, -3.0, 0.0};
   walk(world.route,
        {{7.0, -3.0, 0.0}, {7.0, 3.0, 0.0}, {-7.0, 3.0, 0.0}, {-7.0, -3.0, 0.0}, {1.0, -3.0, 0.0}});
@@ -94,8 +94,8 @@ Side add_side(Plan& plan, int num_quarter_turns) {
   return side;
 }
 
-void furnish_side(Site& site, const Side& side, int first_number) {
-  Dresser dresser(site, side.unit);
+void furnish_side(Draft& draft, const Side& side, int first_number) {
+  Dresser dresser(draft, side.unit);
   dresser.number_from(first_number);
   dresser.dress(side.wing, {.sides = {Use::kDoors, Use::kWindows, Use::kDoors, Use::kPlain}});
   dresser.dress(side.lobby, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kBare}});
@@ -120,11 +120,11 @@ World mirror(const Spec& spec) {
   Plan plan;
   const Side west = add_side(plan, 0);
   const Side east = add_side(plan, 2);
-  Site site = site_of(spec, plan);
-  furnish_side(site, west, 101);
-  furnish_side(site, east, 201);
+  Draft draft = draft_of(spec, plan);
+  furnish_side(draft, west, 101);
+  furnish_side(draft, east, 201);
 
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   constexpr double kEnd_m = 10.4;
   constexpr double kLobby_m = 3.6;
   constexpr double kHall_m = 2.6;

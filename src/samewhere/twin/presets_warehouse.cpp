@@ -36,8 +36,8 @@ int add_aisle(Plan& plan, int index) {
   return unit;
 }
 
-void furnish_aisle(Site& site, int unit) {
-  Dresser dresser(site, unit);
+void furnish_aisle(Draft& draft, int unit) {
+  Dresser dresser(draft, unit);
   Furnisher& furnisher = dresser.furnisher();
   const RackSize size{.length_m = 6.6F, .num_levels = 4};
   const float middle_m = 0.5F * kLength_m;
@@ -64,8 +64,8 @@ Cross add_cross(Plan& plan, bool is_turned) {
   return cross;
 }
 
-void furnish_cross(Site& site, const Cross& cross, int first_number) {
-  Dresser dresser(site, cross.unit);
+void furnish_cross(Draft& draft, const Cross& cross, int first_number) {
+  Dresser dresser(draft, cross.unit);
   Furnisher& furnisher = dresser.furnisher();
   const Wall back = dresser.wall_of(cross.way, 0);
   furnisher.add_double_door({back, 2.4F});
@@ -99,12 +99,12 @@ World warehouse(const Spec& spec) {
   for (int i = 0; i < kNumAisles; ++i) aisles.push_back(add_aisle(plan, i));
   const Cross south = add_cross(plan, false);
   const Cross north = add_cross(plan, true);
-  Site site = site_of(spec, plan);
-  for (const int unit : aisles) furnish_aisle(site, unit);
-  furnish_cross(site, south, 1);
-  furnish_cross(site, north, 11);
+  Draft draft = draft_of(spec, plan);
+  for (const int unit : aisles) furnish_aisle(draft, unit);
+  furnish_cross(draft, south, 1);
+  furnish_cross(draft, north, 11);
 
-  World world{.visits = {std::move(site.building)}};
+  World world{.visits = {std::move(draft.building)}};
   Route& route = world.route;
   route = {.carrier = Carrier::kRobot, .speed_m_s = 1.6, .camera_height_m = 0.75};
   constexpr double kSouth_m = -1.4;
