@@ -208,6 +208,8 @@ Colour reflectance(const Rectangle& rectangle, const TexturePoint& point) {
       return blinds(rectangle, point);
     case Finish::kGrille:
       return grille(m, point);
+    default:
+      return paint(m, point);
   }
   return m.colour;
 }
