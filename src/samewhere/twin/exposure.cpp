@@ -21,7 +21,7 @@ Exposure exposure_of(float signal_per_radiance) {
 
 std::vector<Exposure> automatic_exposures(std::span<const float> mean_radiances,
                                           double frame_rate_hz) {
-  constexpr float kMeanSignal = 0.42F;
+  constexpr float kMeanSignal = 0.36F;
   constexpr double kLag_s = 0.4;
   const auto step = static_cast<float>(1.0 - std::exp(-1.0 / (kLag_s * frame_rate_hz)));
   std::vector<Exposure> exposures;

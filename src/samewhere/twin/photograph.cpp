@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <samewhere/twin/noise.hpp>
 #include <samewhere/twin/photograph.hpp>
@@ -43,30 +44,25 @@ class ToneCurve {
   std::array<float, 16384> levels_{};
 };
 
-constexpr float kSide = 0.0625F;
-constexpr float kMiddle = 1.0F - 2.0F * kSide;
-
-// The lens: a bell three pixels wide, [1 14 1] / 16 along rows and columns.
-cv::Mat blurred(const cv::Mat& radiance) {
-  cv::Mat along_rows = radiance.clone();
-  for (int y = 0; y < radiance.rows; ++y) {
-    const auto* const from = radiance.ptr<cv::Vec3f>(y);
-    auto* const to = along_rows.ptr<cv::Vec3f>(y);
-    for (int x = 1; x + 1 < radiance.cols; ++x) {
-      to[x] = kSide * (from[x - 1] + from[x + 1]) + kMiddle * from[x];
-    }
+// A row of the picture after the lens: a bell three pixels wide, [1 14 1] / 16 along rows and
+// columns.
+void blur_row(const cv::Mat& radiance, int y, std::vector<cv::Vec3f>& result) {
+  constexpr float kSide = 0.0625F;
+  constexpr float kMiddle = 1.0F - 2.0F * kSide;
+  const auto* const above = radiance.ptr<cv::Vec3f>(std::max(y - 1, 0));
+  const auto* const here = radiance.ptr<cv::Vec3f>(y);
+  const auto* const below = radiance.ptr<cv::Vec3f>(std::min(y + 1, radiance.rows - 1));
+  const auto blurred_down = [&](int x) {
+    return cv::Vec3f(kSide * (above[x] + below[x]) + kMiddle * here[x]);
+  };
+  cv::Vec3f before = blurred_down(0);
+  cv::Vec3f now = before;
+  for (int x = 0; x < radiance.cols; ++x) {
+    const cv::Vec3f after = blurred_down(std::min(x + 1, radiance.cols - 1));
+    result[static_cast<std::size_t>(x)] = kSide * (before + after) + kMiddle * now;
+    before = now;
+    now = after;
   }
-  cv::Mat result = along_rows.clone();
-  for (int y = 1; y + 1 < radiance.rows; ++y) {
-    const auto* const above = along_rows.ptr<cv::Vec3f>(y - 1);
-    const auto* const here = along_rows.ptr<cv::Vec3f>(y);
-    const auto* const below = along_rows.ptr<cv::Vec3f>(y + 1);
-    auto* const to = result.ptr<cv::Vec3f>(y);
-    for (int x = 0; x < radiance.cols; ++x) {
-      to[x] = kSide * (above[x] + below[x]) + kMiddle * here[x];
-    }
-  }
-  return result;
 }
 
 // Light that reaches a pixel over what reaches the middle.
@@ -110,10 +106,10 @@ std::array<float, 3> pixel_noise(std::uint64_t seed, std::uint64_t pixel) {
 cv::Mat photograph(const cv::Mat& radiance, const Exposure& exposure, std::uint64_t seed) {
   static const ToneCurve tone;
   const SensorNoise sensor(exposure.gain);
-  const cv::Mat projected = blurred(radiance);
+  std::vector<cv::Vec3f> light(static_cast<std::size_t>(radiance.cols));
   cv::Mat picture(radiance.size(), CV_8UC3);
   for (int y = 0; y < radiance.rows; ++y) {
-    const auto* const light = projected.ptr<cv::Vec3f>(y);
+    blur_row(radiance, y, light);
     auto* const level = picture.ptr<cv::Vec3b>(y);
     for (int x = 0; x < radiance.cols; ++x) {
       const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(radiance.cols) +
@@ -123,7 +119,7 @@ cv::Mat photograph(const cv::Mat& radiance, const Exposure& exposure, std::uint6
           vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
       const std::array<float, 3> noise = pixel_noise(seed, pixel);
       for (int channel = 0; channel < 3; ++channel) {
-        const float signal = scale * light[x][channel];
+        const float signal = scale * light[static_cast<std::size_t>(x)][channel];
         level[x][channel] = cv::saturate_cast<std::uint8_t>(
             tone.level(signal + sensor.deviation(signal) * noise[static_cast<std::size_t>(channel)]));
       }

@@ -170,15 +170,15 @@ cv::Vec3f Renderer::smooth_pixel(const Eye& eye, const MovingThings& moving, con
 }
 
 void Renderer::smooth_edges(const Eye& eye, const MovingThings& moving, View& view) const {
-  cv::Mat smooth = view.radiance.clone();
+  std::vector<std::pair<cv::Point, cv::Vec3f>> smoothed;
   for (int y = 1; y + 1 < height_px_; ++y) {
     for (int x = 1; x + 1 < width_px_; ++x) {
       const cv::Point pixel(x, y);
       if (!is_edge(view.surface, pixel)) continue;
-      smooth.at<cv::Vec3f>(pixel) = smooth_pixel(eye, moving, view, pixel);
+      smoothed.emplace_back(pixel, smooth_pixel(eye, moving, view, pixel));
     }
   }
-  view.radiance = smooth;
+  for (const auto& [pixel, colour] : smoothed) view.radiance.at<cv::Vec3f>(pixel) = colour;
 }
 
 View Renderer::render(const core::Rigid3& world_from_camera,
