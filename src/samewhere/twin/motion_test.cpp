@@ -224,6 +224,21 @@ TEST(Motion, AWalkerIsLevelAndLooksAheadIntoABend) {
   EXPECT_GT(mean_lead_rad, 0.3);
 }
 
+TEST(Motion, AWalkerDriftsALittleAndARobotKeepsItsLine) {
+  const auto most_aside_m = [](Carrier carrier, std::uint64_t seed) {
+    double most_m = 0.0;
+    for (const auto& pose : Motion(route_along(carrier, {walk_to(100, 0)}), seed).frames(15.0)) {
+      most_m = std::max(most_m, std::abs(pose.world_from_camera.translation.y()));
+    }
+    return most_m;
+  };
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    EXPECT_GT(most_aside_m(Carrier::kWalker, seed), 0.06) << "seed " << seed;
+    EXPECT_LT(most_aside_m(Carrier::kWalker, seed), 0.23) << "seed " << seed;
+    EXPECT_LT(most_aside_m(Carrier::kRobot, seed), 1e-3) << "seed " << seed;
+  }
+}
+
 TEST(Motion, OnStairsTheHeightFollowsAndTheCameraLooksAlong) {
   const Route route =
       route_along(Carrier::kWalker, {walk_to(5, 0), walk_to(10, 0, 3.0), walk_to(15, 0, 3.0)});
