@@ -2,24 +2,11 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
 #include <samewhere/core/random.hpp>
+#include <samewhere/twin/leg.hpp>
 #include <samewhere/twin/route.hpp>
 
 namespace samewhere::twin {
-
-// What a carrier does at one moment, by the names below. Headings are unwrapped.
-using DriveState = Eigen::Matrix<double, 7, 1>;
-enum DriveChannel {
-  kDriveX,  // of the carrier on the floor, metres
-  kDriveY,
-  kDriveZ,
-  kDriveHeading,  // of the carrier, radians
-  kDriveLook,     // where the camera is meant to look: a walker looks ahead into bends
-  kDriveSlope,    // of the way ahead, radians, up is positive
-  kDriveMoving    // 0 where the carrier stands, 1 at its full speed
-};
 
 struct Darkness {
   double begin_s = 0.0;
@@ -39,7 +26,8 @@ inline constexpr double kDriveStep_s = 0.1;
 inline constexpr double kMostFromRoute_m = 0.5;
 
 // Walks along a route: speeds up and slows down smoothly, slower in bends and on stairs, at a pace
-// that varies a little. Corners sharper than 100 degrees, and lifts, are turned on the spot. Throws
+// that varies a little. Before and after lifts, at corners sharper than 100
+// degrees and within bends of more than 185, the carrier stops and turns on the spot. Throws
 // ContractError for a route with values that are not finite, or times or a speed below zero.
 Drive drive_along(const Route& route, core::Random& random);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/random.hpp>
 #include <samewhere/twin/inertial.hpp>
 
 namespace samewhere::twin {
@@ -45,6 +46,37 @@ TEST_P(InertialUnit, CleanSamplesLeadToTheTrueMotion) {
       EXPECT_EQ(end.pose_sigma().norm(), 0.0);
       EXPECT_NEAR(end.stamp_s, until_s, 1e-9);
     }
+  }
+}
+
+// The state that errs by `error`, in the order of the covariance.
+InertialState disturbed(const InertialState& state, const Eigen::Matrix<double, 15, 1>& error) {
+  InertialState wrong = state;
+  wrong.world_from_body.translation += error.segment<3>(0);
+  wrong.world_from_body.rotation =
+      state.world_from_body.rotation * core::exp_so3(error.segment<3>(3));
+  wrong.velocity_m_s += error.segment<3>(6);
+  wrong.bias.gyroscope_rad_s += error.segment<3>(9);
+  wrong.bias.accelerometer_m_s2 += error.segment<3>(12);
+  return wrong;
+}
+
+TEST_P(InertialUnit, TheCovarianceFollowsWhatAnErrorDoes) {
+  constexpr double kScale = 1e-4;
+  const InertialNoise none = InertialNoise::none();
+  const auto samples = inertial_samples(motion_, none, 1);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    core::Random random(core::seed_of(seed, "test.error", 0));
+    Eigen::Matrix<double, 15, 1> error;
+    for (double& value : error) value = random.gaussian();
+    InertialState begin = true_state(motion_, 4.0, {});
+    begin.covariance = error * error.transpose();
+    const InertialState end = integrated(begin, samples, none, 5.0);
+    const InertialState wrong = integrated(disturbed(begin, kScale * error), samples, none, 5.0);
+    const core::Vector6d moved = pose_error(wrong.world_from_body, end.world_from_body) / kScale;
+    const core::Matrix6d expected = moved * moved.transpose();
+    const core::Matrix6d covariance = end.covariance.topLeftCorner<6, 6>();
+    EXPECT_LT((covariance - expected).norm(), 0.1 + 0.02 * expected.norm()) << "seed " << seed;
   }
 }
 

@@ -75,9 +75,9 @@ TEST_P(CarriedCamera, DerivativesAreThoseOfThePose) {
   }
 }
 
-TEST_P(CarriedCamera, NeverJumps) {
+// At 1 kHz, for a carrier of at most 1.3 m/s.
+void expect_no_jump(const Motion& motion) {
   constexpr double kStep_s = 1e-3;
-  const Motion motion(varied_route(GetParam()), 5);
   Eigen::Vector3d acceleration_m_s2 = motion.acceleration_m_s2(0.0);
   core::Rigid3 pose = motion.world_from_body(0.0);
   for (int k = 1; k * kStep_s <= motion.duration_s(); ++k) {
@@ -91,6 +91,30 @@ TEST_P(CarriedCamera, NeverJumps) {
     ASSERT_LT(motion.acceleration_m_s2(t).norm(), 9.0) << t << " s";
     acceleration_m_s2 = motion.acceleration_m_s2(t);
     pose = next;
+  }
+}
+
+TEST_P(CarriedCamera, NeverJumps) { expect_no_jump(Motion(varied_route(GetParam()), 5)); }
+
+TEST_P(CarriedCamera, NeverJumpsOnAWayOfManyShortLines) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    core::Random random(core::seed_of(seed, "test.route", 1));
+    std::vector<Step> steps;
+    double heading_rad = 0.0;
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 20; ++i) {
+      heading_rad += random.uniform(-2.0, 2.0);
+      position_m += random.uniform(0.05, 1.0) *
+                    Eigen::Vector3d(std::cos(heading_rad), std::sin(heading_rad), 0.0);
+      steps.emplace_back(WalkTo{position_m});
+    }
+    const Motion motion(route_along(GetParam(), steps), seed);
+    ASSERT_NO_FATAL_FAILURE(expect_no_jump(motion));
+    const double end_rad = motion.heading_rad(motion.duration_s() + 1.0);
+    EXPECT_NEAR(std::remainder(end_rad - heading_rad, 2.0 * kPi), 0.0, 1e-6);
+    EXPECT_NEAR((motion.floor_position_m(motion.duration_s() + 1.0) - position_m).norm(), 0.0,
+                1e-6);
   }
 }
 
@@ -198,6 +222,21 @@ TEST(Motion, AWalkerIsLevelAndLooksAheadIntoABend) {
     mean_lead_rad += (yaw_of(motion.world_from_body(t)) - motion.heading_rad(t)) / 20.0;
   }
   EXPECT_GT(mean_lead_rad, 0.3);
+}
+
+TEST(Motion, AWalkerDriftsALittleAndARobotKeepsItsLine) {
+  const auto most_aside_m = [](Carrier carrier, std::uint64_t seed) {
+    double most_m = 0.0;
+    for (const auto& pose : Motion(route_along(carrier, {walk_to(100, 0)}), seed).frames(15.0)) {
+      most_m = std::max(most_m, std::abs(pose.world_from_camera.translation.y()));
+    }
+    return most_m;
+  };
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    EXPECT_GT(most_aside_m(Carrier::kWalker, seed), 0.06) << "seed " << seed;
+    EXPECT_LT(most_aside_m(Carrier::kWalker, seed), 0.23) << "seed " << seed;
+    EXPECT_LT(most_aside_m(Carrier::kRobot, seed), 1e-3) << "seed " << seed;
+  }
 }
 
 TEST(Motion, OnStairsTheHeightFollowsAndTheCameraLooksAlong) {
