@@ -29,7 +29,7 @@ class TwinSource : public core::Source {
     if (!workers_) {
       studio_.emplace(*walk_, config_);
       const int num_workers =
-          config_.num_workers > 0 ? config_.num_workers : core::num_processors();
+          config_.num_workers > 0 ? config_.num_workers : core::num_hardware_threads();
       workers_.emplace(walk_->num_frames(), num_workers,
                        [this](int index) { return studio_->frame(index); });
     }
