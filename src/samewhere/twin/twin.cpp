@@ -76,8 +76,7 @@ class TwinSource : public core::Source {
     core::Random random(core::seed_of(seed_, "twin.exposure", num_given_));
     constexpr double kUsual_s = 0.01;  // puts light walls at two thirds of the range
     const double slow = 0.05 * std::sin(2.0 * std::numbers::pi * 0.07 * stamp_s);
-    return {.duration_s =
-                static_cast<float>(kUsual_s * (1.0 + slow + 0.008 * random.gaussian()))};
+    return {.duration_s = static_cast<float>(kUsual_s * (1.0 + slow + 0.008 * random.gaussian()))};
   }
 
   std::string name_;
