@@ -20,17 +20,28 @@ bool is_same(const cv::Mat& a, const cv::Mat& b) {
 
 float mean_of(const cv::Vec3f& colour) { return (colour[0] + colour[1] + colour[2]) / 3.0F; }
 
-// A closed box that stands free.
+// The front, that looks along -x, the back and the top of a box.
 std::vector<Rectangle> crate(const Eigen::Vector3f& low_m, const Eigen::Vector3f& high_m) {
   const Material paint{.finish = Finish::kPaint, .colour = Colour::Constant(0.5F)};
-  auto faces = faces_of({low_m, high_m}, {.axis = 0, .facing = 1.0F}, {paint, paint});
   const Eigen::Vector3f size_m = high_m - low_m;
-  faces.push_back({.corner_m = {low_m.x(), high_m.y(), low_m.z()},
-                   .right = -Eigen::Vector3f::UnitY(),
-                   .up = Eigen::Vector3f::UnitZ(),
-                   .size_m = {size_m.y(), size_m.z()},
-                   .material = paint});
-  return faces;
+  const Eigen::Vector3f x = Eigen::Vector3f::UnitX();
+  const Eigen::Vector3f y = Eigen::Vector3f::UnitY();
+  const Eigen::Vector3f z = Eigen::Vector3f::UnitZ();
+  return {{.corner_m = {low_m.x(), high_m.y(), low_m.z()},
+           .right = -y,
+           .up = z,
+           .size_m = {size_m.y(), size_m.z()},
+           .material = paint},
+          {.corner_m = {high_m.x(), low_m.y(), low_m.z()},
+           .right = y,
+           .up = z,
+           .size_m = {size_m.y(), size_m.z()},
+           .material = paint},
+          {.corner_m = {low_m.x(), low_m.y(), high_m.z()},
+           .right = x,
+           .up = y,
+           .size_m = {size_m.x(), size_m.y()},
+           .material = paint}};
 }
 
 TEST(Renderer, EveryPixelSeesWhatASingleRayMeets) {
