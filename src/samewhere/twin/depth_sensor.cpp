@@ -13,9 +13,9 @@ constexpr float kMaxRange_m = 8.0F;
 constexpr float kNoise_per_m = 0.0015F;       // standard deviation over depth squared
 constexpr float kFocalBaseline_px_m = 43.0F;  // disparity times depth
 constexpr float kDisparityStep_px = 0.125F;
-constexpr float kSteps_per_m = 5000.0F;   // of the number that the sensor gives out
-constexpr float kGrazing = 0.2F;  // cosine below which measurements begin to fail
-constexpr float kBlind = 0.05F;   // and where all do
+constexpr float kSteps_per_m = 5000.0F;  // of the number that the sensor gives out
+constexpr float kGrazing = 0.2F;         // cosine below which measurements begin to fail
+constexpr float kBlind = 0.05F;          // and where all do
 
 // Inverse depth is linear on a plane: where it bends, surfaces meet or cover each other.
 float bend(const cv::Mat& depth_m, const cv::Point& at, const cv::Point& step) {

@@ -177,9 +177,8 @@ Light::Light(const std::vector<Rectangle>& rectangles, const RayScene& rays)
     return [this, emitters](const SurfacePoint& p) { return light_from(emitters, p); };
   });
   const auto directions = directions_around_z<kNumBakeRays>();
-  fill(on_surfaces_, [&](int) {
-    return [&](const SurfacePoint& p) { return gathered(p, directions, direct); };
-  });
+  fill(on_surfaces_,
+       [&](int) { return [&](const SurfacePoint& p) { return gathered(p, directions, direct); }; });
   for (int r = 0; r < static_cast<int>(rectangles.size()); ++r) {
     for_each_point(direct, r, [&](int column, int row) {
       Colour& value = on_surfaces_.value(r, column, row);
@@ -284,8 +283,7 @@ Colour Light::gathered(const SurfacePoint& point, std::span<const Eigen::Vector3
     const Rectangle& seen = rectangles_[static_cast<std::size_t>(hits[i].rectangle)];
     if (is_emitting(seen.material)) continue;  // direct light already
     const Eigen::Vector3f position = point.position + hits[i].reach * directions[i];
-    sum +=
-        mean_reflectance(seen.material) * light.at(hits[i].rectangle, seen.right_up_m(position));
+    sum += mean_reflectance(seen.material) * light.at(hits[i].rectangle, seen.right_up_m(position));
   }
   return sum / static_cast<float>(around_z.size());
 }

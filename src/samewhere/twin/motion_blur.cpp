@@ -81,10 +81,9 @@ cv::Mat blur_by_motion(const View& view, const core::Camera& camera, const Camer
     for (int x = 0; x < blurred.cols; ++x) {
       const Eigen::Vector2f shift_px = field.at(x, y, depth_m[x]);
       const bool is_sharp = shift_px.squaredNorm() < kSharp_px * kSharp_px;
-      to[x] = is_sharp
-                  ? sharp[x]
-                  : mean_along(view.radiance, {static_cast<float>(x), static_cast<float>(y)},
-                               shift_px);
+      to[x] = is_sharp ? sharp[x]
+                       : mean_along(view.radiance, {static_cast<float>(x), static_cast<float>(y)},
+                                    shift_px);
     }
   }
   return blurred;

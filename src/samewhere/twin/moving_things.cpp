@@ -15,8 +15,19 @@ struct Disc {
   float area_m2 = 0.0F;
 };
 
-Disc disc_of(const Rectangle& r) {
-  return {r.at(0.5F * r.size_m), r.normal(), r.size_m.prod()};
+// In pieces that are nearly square: a disc stands for no plank.
+std::vector<Disc> discs_of(const Rectangle& r) {
+  constexpr float kPiece_m = 0.2F;
+  const Eigen::Array2f num_pieces = (r.size_m.array() / kPiece_m).ceil();
+  const Eigen::Vector2f piece_m = r.size_m.array() / num_pieces;
+  std::vector<Disc> discs;
+  for (float v = 0.5F; v < num_pieces.y(); v += 1.0F) {
+    for (float u = 0.5F; u < num_pieces.x(); u += 1.0F) {
+      discs.push_back(
+          {r.at(Eigen::Vector2f(u, v).cwiseProduct(piece_m)), r.normal(), piece_m.prod()});
+    }
+  }
+  return discs;
 }
 
 // Share of what a point sees that a disc fills, roughly; none if it turns its back.
@@ -36,6 +47,7 @@ float share_filled(const Disc& disc, const SurfacePoint& point) {
 
 // Of surfaces one after another that are close together: a person.
 struct MovingThings::Group {
+  Eigen::Vector3f first_middle;
   std::vector<Disc> discs;
   Eigen::AlignedBox3f bounds;
 };
@@ -46,13 +58,14 @@ MovingThings::MovingThings(const std::vector<Rectangle>& rectangles, const Light
   if (rectangles.empty()) return;
   rays_.emplace(rectangles);
   for (const auto& r : rectangles) {
-    const Disc disc = disc_of(r);
-    const bool is_new = groups_.empty() || (disc.middle - groups_.back().discs.front().middle)
-                                                   .head<2>()
-                                                   .norm() > kGroup_m;
-    if (is_new) groups_.emplace_back();
-    groups_.back().discs.push_back(disc);
-    groups_.back().bounds.extend(disc.middle);
+    const Eigen::Vector3f middle = r.at(0.5F * r.size_m);
+    const bool is_new =
+        groups_.empty() || (middle - groups_.back().first_middle).head<2>().norm() > kGroup_m;
+    if (is_new) groups_.push_back({.first_middle = middle});
+    for (const auto& disc : discs_of(r)) {
+      groups_.back().discs.push_back(disc);
+      groups_.back().bounds.extend(disc.middle);
+    }
   }
 }
 

@@ -99,12 +99,12 @@ class Person::Figure {
     }
     if (!prism.has_top) return;
     const Eigen::Vector2f size = 0.75F * prism.size_m;
-    rectangles_.push_back({.corner_m = joint * Eigen::Vector3f(-0.5F * size.x(), -0.5F * size.y(),
-                                                               prism.high_m),
-                           .right = joint.linear().col(0),
-                           .up = joint.linear().col(1),
-                           .size_m = size,
-                           .material = material});
+    rectangles_.push_back(
+        {.corner_m = joint * Eigen::Vector3f(-0.5F * size.x(), -0.5F * size.y(), prism.high_m),
+         .right = joint.linear().col(0),
+         .up = joint.linear().col(1),
+         .size_m = size,
+         .material = material});
   }
 
   // Corners of the prism lie on an ellipse; the pattern runs on around it.
@@ -165,8 +165,8 @@ class Person::Figure {
 
   void add_arm(const Joint& shoulder, float swing, float side) {
     const float h = looks_.height_ratio;
-    const Joint upper = swung(shoulder, 0.38F * swing) *
-                        Eigen::AngleAxisf(-0.08F * side, Eigen::Vector3f::UnitY());
+    const Joint upper =
+        swung(shoulder, 0.38F * swing) * Eigen::AngleAxisf(-0.08F * side, Eigen::Vector3f::UnitY());
     const Joint fore = swung(moved(upper, 0.0F, 0.0F, -0.29F * h), 0.30F + 0.15F * swing);
     add(upper, {{0.11F, 0.115F}, -0.31F * h, 0.02F, 8, true}, looks_.top);
     add(fore, {{0.085F, 0.09F}, -0.25F * h, 0.02F, 8, false}, looks_.top);
@@ -193,14 +193,13 @@ Person::Person(const std::vector<Eigen::Vector3d>& path_m, std::uint64_t seed) {
   start_m_ = random.uniform(0.0, reached_m_.back());
   constexpr std::array<Finish, 3> kTops = {Finish::kPaint, Finish::kCarpet, Finish::kGrille};
   const auto skin = static_cast<float>(random.uniform(0.35, 0.9));
-  looks_ = {
-      .skin = cloth(random, Finish::kPaint, colour_of_srgb(skin, 0.8F * skin, 0.68F * skin)),
-      .hair = cloth(random, Finish::kPaint, hair_colour(random)),
-      .top = cloth(random, kTops[random.index(kTops.size())], any_colour(random, 0.3, 0.95)),
-      .trousers = cloth(random, Finish::kPaint, any_colour(random, 0.2, 0.6)),
-      .shoes = cloth(random, Finish::kPaint, any_colour(random, 0.1, 0.4)),
-      .height_ratio = static_cast<float>(random.uniform(0.92, 1.08)),
-      .width_ratio = static_cast<float>(random.uniform(0.92, 1.12))};
+  looks_ = {.skin = cloth(random, Finish::kPaint, colour_of_srgb(skin, 0.8F * skin, 0.68F * skin)),
+            .hair = cloth(random, Finish::kPaint, hair_colour(random)),
+            .top = cloth(random, kTops[random.index(kTops.size())], any_colour(random, 0.3, 0.95)),
+            .trousers = cloth(random, Finish::kPaint, any_colour(random, 0.2, 0.6)),
+            .shoes = cloth(random, Finish::kPaint, any_colour(random, 0.1, 0.4)),
+            .height_ratio = static_cast<float>(random.uniform(0.92, 1.08)),
+            .width_ratio = static_cast<float>(random.uniform(0.92, 1.12))};
 }
 
 // At a distance of any size along the round.
@@ -237,8 +236,8 @@ std::vector<Rectangle> Person::at(double stamp_s) const {
   Joint world_from_feet = Joint::Identity();
   world_from_feet.translation() = smooth_point(walked_m).cast<float>();
   // y of the body is forwards
-  world_from_feet.rotate(Eigen::AngleAxisf(heading_rad - 0.5F * static_cast<float>(kPi),
-                                           Eigen::Vector3f::UnitZ()));
+  world_from_feet.rotate(
+      Eigen::AngleAxisf(heading_rad - 0.5F * static_cast<float>(kPi), Eigen::Vector3f::UnitZ()));
   return Figure(looks_).build(world_from_feet, 2.0 * kPi * walked_m / kStride_m);
 }
 
@@ -248,8 +247,7 @@ std::vector<Person> people_on(const std::vector<std::vector<Eigen::Vector3d>>& p
   std::vector<Person> people;
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    people.emplace_back(paths_m[index % paths_m.size()],
-                        core::seed_of(seed, "twin.people", index));
+    people.emplace_back(paths_m[index % paths_m.size()], core::seed_of(seed, "twin.people", index));
   }
   return people;
 }

@@ -35,8 +35,7 @@ class ToneCurve {
  private:
   // sRGB: straight near black, where a power would make mountains of the noise
   static float gamma_coded(float light) {
-    return light < 0.0031308F ? 12.92F * light
-                              : 1.055F * std::pow(light, 1.0F / 2.4F) - 0.055F;
+    return light < 0.0031308F ? 12.92F * light : 1.055F * std::pow(light, 1.0F / 2.4F) - 0.055F;
   }
 
   static constexpr float kShoulder = 0.7F;
@@ -114,14 +113,13 @@ cv::Mat photograph(const cv::Mat& radiance, const Exposure& exposure, std::uint6
     for (int x = 0; x < radiance.cols; ++x) {
       const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(radiance.cols) +
                          static_cast<std::uint64_t>(x);
-      const float scale =
-          exposure.signal_per_radiance() *
-          vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
+      const float scale = exposure.signal_per_radiance() *
+                          vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
       const std::array<float, 3> noise = pixel_noise(seed, pixel);
       for (int channel = 0; channel < 3; ++channel) {
         const float signal = scale * light[static_cast<std::size_t>(x)][channel];
-        level[x][channel] = cv::saturate_cast<std::uint8_t>(
-            tone.level(signal + sensor.deviation(signal) * noise[static_cast<std::size_t>(channel)]));
+        level[x][channel] = cv::saturate_cast<std::uint8_t>(tone.level(
+            signal + sensor.deviation(signal) * noise[static_cast<std::size_t>(channel)]));
       }
     }
   }

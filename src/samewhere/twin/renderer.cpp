@@ -80,11 +80,8 @@ void Renderer::shade_run(const Eye& eye, MovingThings& moving, const Run& run, V
   const Eigen::Vector2f eye_m = r.right_up_m(eye.position);
   const auto light_at = [&](const Eigen::Vector2f& right_up_m) -> Colour {
     if (is_emitting(r.material)) return Colour::Constant(r.material.radiance);
-    if (run.surface() >= num_at_rest) {
-      return moving.light_at(run.surface() - num_at_rest, right_up_m);
-    }
-    const Colour light = light_.at(run.surface(), right_up_m);
-    return moving.is_empty() ? light : light * moving.share_left({r.at(right_up_m), normal});
+    return run.surface() < num_at_rest ? light_.at(run.surface(), right_up_m)
+                                       : moving.light_at(run.surface() - num_at_rest, right_up_m);
   };
   auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
   auto* const depth_m = view.depth_m.ptr<float>(run.y) + run.first_x;
@@ -104,6 +101,29 @@ void Renderer::shade_run(const Eye& eye, MovingThings& moving, const Run& run, V
   }
 }
 
+// What things that move keep from the surfaces close to them changes slowly over the picture: it is
+// computed for some pixels and interpolated.
+void Renderer::darken_run(const Eye& eye, const MovingThings& moving, const Run& run,
+                          View& view) const {
+  constexpr std::size_t kStep = 4;
+  const Eigen::Vector3f normal = rectangle(moving, run.surface()).normal();
+  auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
+  const std::size_t last = run.hits.size() - 1;
+  const auto share_at = [&](std::size_t i) {
+    return moving.share_left({eye.position + run.hits[i].reach * run.directions[i], normal});
+  };
+  float share = share_at(0);
+  for (std::size_t first = 0; first <= last; first += kStep) {
+    const std::size_t next = std::min(first + kStep, last);
+    const float next_share = share_at(next);
+    for (std::size_t i = first; i < first + kStep && i <= last; ++i) {
+      const float ratio = static_cast<float>(i - first) / static_cast<float>(kStep);
+      radiance[i] *= share + ratio * (next_share - share);
+    }
+    share = next_share;
+  }
+}
+
 void Renderer::render_row(const Eye& eye, MovingThings& moving, int y, View& view) const {
   const auto num_pixels = static_cast<std::size_t>(width_px_);
   const Eigen::Vector3f* const in_camera =
@@ -114,18 +134,19 @@ void Renderer::render_row(const Eye& eye, MovingThings& moving, int y, View& vie
   }
   std::vector<Hit> hits(num_pixels);
   rays_.first_hits(eye.position, directions, hits);
-  moving.meet(eye.position, directions, static_cast<int>(building_.rectangles.size()), hits);
+  const int num_at_rest = static_cast<int>(building_.rectangles.size());
+  moving.meet(eye.position, directions, num_at_rest, hits);
   int* const surface = view.surface.ptr<int>(y);
   for (std::size_t first = 0, end = 0; first < num_pixels; first = end) {
     const int seen = hits[first].rectangle;
     for (end = first; end < num_pixels && hits[end].rectangle == seen; ++end) surface[end] = seen;
     if (seen < 0) continue;
-    shade_run(eye, moving,
-              {.y = y,
-               .first_x = static_cast<int>(first),
-               .directions = std::span(directions).subspan(first, end - first),
-               .hits = std::span(hits).subspan(first, end - first)},
-              view);
+    const Run run{.y = y,
+                  .first_x = static_cast<int>(first),
+                  .directions = std::span(directions).subspan(first, end - first),
+                  .hits = std::span(hits).subspan(first, end - first)};
+    shade_run(eye, moving, run, view);
+    if (!moving.is_empty() && seen < num_at_rest) darken_run(eye, moving, run, view);
   }
 }
 
@@ -142,8 +163,8 @@ cv::Vec3f Renderer::smooth_pixel(const Eye& eye, const MovingThings& moving, con
   };
   std::array<Neighbour, 5> neighbours;  // of different surfaces, this pixel's first
   std::size_t num_neighbours = 0;
-  for (const auto& step : {cv::Point(0, 0), cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1),
-                           cv::Point(0, -1)}) {
+  for (const auto& step :
+       {cv::Point(0, 0), cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
     const int surface = view.surface.at<int>(pixel + step);
     const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(num_neighbours);
     const bool is_new = std::none_of(neighbours.begin(), end,
