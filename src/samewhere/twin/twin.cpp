@@ -9,8 +9,8 @@
 #include <samewhere/twin/depth_sensor.hpp>
 #include <samewhere/twin/office_loop.hpp>
 #include <samewhere/twin/photograph.hpp>
-#include <samewhere/twin/places.hpp>
 #include <samewhere/twin/renderer.hpp>
+#include <samewhere/twin/truth.hpp>
 #include <samewhere/twin/twin.hpp>
 
 namespace samewhere::twin {
@@ -66,8 +66,8 @@ class TwinSource : public core::Source {
   }
 
   core::Truth truth() const override {
-    return {.trajectory = walk_,
-            .places = places_of(walk_, building_, rays_, rig_->cameras.front())};
+    const Walk walk{.poses = walk_, .visit_of_frame = std::vector<int>(walk_.size(), 0)};
+    return core_truth(walk_, truth_of(walk, {{&building_, &rays_}}, rig_->cameras.front()));
   }
 
  private:
