@@ -63,15 +63,18 @@ float clouds(const TexturePoint& p, std::uint32_t wear_seed, float strength) {
 float marked(const TexturePoint& p, const Material& m, float strength) {
   const Grain grain = grain_of(m) + 40;
   const TexturePoint crumpled_p = crumpled(p, grain);
-  float marks = 0.9F * spots(crumpled_p, {.cell_m = 0.07F, .density = 0.16F}, grain + 2) +
-                0.5F * spots(crumpled_p, {.cell_m = 0.23F, .density = 0.25F}, grain + 3) +
-                0.9F * scratches(p, {.cell_m = 0.29F, .density = 0.35F}, grain + 4);
+  float marks = 0.8F * spots(crumpled_p, {.cell_m = 0.07F, .density = 0.16F}, grain + 2) +
+                0.3F * spots(crumpled_p, {.cell_m = 0.19F, .density = 0.25F}, grain + 3) +
+                0.6F * scratches(crumpled_p, {.cell_m = 0.29F, .density = 0.3F}, grain + 4);
   const std::uint32_t wear = m.wear_seed;
-  marks += 0.4F * spots(p, {.cell_m = 0.37F, .density = 0.1F}, wear);
+  marks += 0.25F * spots(crumpled_p, {.cell_m = 0.37F, .density = 0.1F}, wear);
   constexpr float kFine_m = 0.006F;
   if (p.footprint_m < kFine_m) {
-    marks += 1.1F * spots(p, {.cell_m = 0.009F, .density = 0.3F}, wear + 1) +
-             1.2F * scratches(p, {.cell_m = 0.05F, .density = 0.3F}, wear + 2);
+    // in patches: where hands and bags go
+    const float worn_off = 0.75F + 0.8F * value_noise(p.u_m * 4.0F, p.v_m * 4.0F, wear + 4);
+    marks += std::max(worn_off, 0.3F) *
+             (0.8F * spots(p, {.cell_m = 0.009F, .density = 0.3F}, wear + 1) +
+              1.1F * scratches(p, {.cell_m = 0.05F, .density = 0.35F}, wear + 2));
     marks -= 0.16F * octave_noise(p, {.wavelength_m = 0.003F, .count = 2, .gain = 0.8F}, wear + 3);
   }
   return 1.0F - std::min(strength * marks, 0.8F);

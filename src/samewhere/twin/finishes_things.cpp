@@ -21,8 +21,9 @@ Colour wood(const Material& m, const TexturePoint& p) {
   const TexturePoint stretched{p.u_m + bend_m, p.v_m * 0.07F, p.footprint_m};
   const float fibres =
       octave_noise(stretched, {.wavelength_m = 0.11F, .count = 5, .gain = 0.75F}, grain + 1);
-  const float knots = spots(p, {.cell_m = 0.34F, .density = 0.3F}, grain + 8);
-  return m.colour * ((1.0F + 0.17F * fibres - 0.3F * knots) * marked(p, m, 0.35F));
+  const TexturePoint longer{p.u_m + bend_m, 0.4F * p.v_m, p.footprint_m};
+  const float knots = spots(longer, {.cell_m = 0.13F, .density = 0.25F}, grain + 8);
+  return m.colour * ((1.0F + 0.17F * fibres - 0.22F * knots) * marked(p, m, 0.35F));
 }
 
 Colour paint(const Material& m, const TexturePoint& p) {
@@ -146,11 +147,9 @@ Colour books(const Rectangle& r, const TexturePoint& p) {
   const Grain grain = grain_of(m);
   const int book = floor_int(p.u_m / kBack_m);
   const std::uint32_t hash = hash_cell(book, 0, grain);
-  const auto part = [&](int byte) {
-    return static_cast<float>((hash >> (8 * byte)) & 0xffU) / 255.0F;
-  };
-  const Colour dye = Colour(part(0), part(1), 0.5F * (part(0) + part(2))).square();
-  const Colour back = 0.55F * dye + 0.45F * dye.mean() + 0.02F;
+  const auto part = [&](std::uint32_t which) { return unit_float(scramble(hash + which)); };
+  const Colour dye = Colour(part(0), part(1), part(2)).square();
+  const Colour back = 0.4F * dye + 0.4F * dye.mean() + 0.02F;
   const float height_m = r.size_m.y() * (0.78F + 0.22F * part(3));
   const float above = beyond(p.v_m - height_m, p.footprint_m);
   const float gap = on_line(to_grid_line_m(p.u_m, kBack_m), 0.0015F, p.footprint_m);
@@ -204,7 +203,7 @@ Colour window_view(const Rectangle& r, const TexturePoint& point) {
   const float roof_m = height_m * (0.5F + 0.14F * grid_value(block, 1, grain + 10));
   const float panes = inside(to_grid_line_m(p.u_m, 0.045F), 0.008F, 1.0F, p.footprint_m) *
                       inside(to_grid_line_m(p.v_m, 0.06F), 0.012F, 1.0F, p.footprint_m);
-  const float wall = 0.3F + 0.1F * grid_value(block, 2, grain + 10);
+  const float wall = 0.22F + 0.08F * grid_value(block, 2, grain + 10);
   const Colour house = Colour(0.9F, 0.95F, 1.0F) * (wall * (1.0F - 0.55F * panes));
   const float crown_m =
       height_m *

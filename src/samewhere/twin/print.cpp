@@ -192,6 +192,12 @@ float person_ink(const SignPoint& p) {
                    in_block(p, {0.515F, 0.14F}, {0.60F, 0.42F})});
 }
 
+float extinguisher_ink(const SignPoint& p) {
+  return std::max(
+      {in_block(p, {0.36F, 0.15F}, {0.6F, 0.62F}), in_block(p, {0.43F, 0.62F}, {0.53F, 0.76F}),
+       in_block(p, {0.40F, 0.76F}, {0.70F, 0.82F}), in_block(p, {0.66F, 0.45F}, {0.72F, 0.78F})});
+}
+
 float pictogram_ink(int number, const SignPoint& p) {
   switch (number) {
     case 1:
@@ -200,6 +206,8 @@ float pictogram_ink(int number, const SignPoint& p) {
       return lift_ink(p);
     case 3:
       return person_ink(p);
+    case 4:
+      return extinguisher_ink(p);
     default:
       return arrow_ink(p);
   }

@@ -11,7 +11,8 @@ namespace samewhere::twin {
 Colour door_plate(const Rectangle& plate, const TexturePoint& point);
 // Heading, picture and lines of text in a layout and colours that follow from the pattern seed.
 Colour poster(const Rectangle& paper, const TexturePoint& point);
-// A white arrow, stairs, a lift or a person in a frame; which one says `number` (Pictogram).
+// A white arrow, stairs, a lift, a person or an extinguisher in a frame; which one says `number`
+// (Pictogram).
 Colour pictogram(const Rectangle& sign, const TexturePoint& point);
 // A bar code with lines of text under it.
 Colour label(const Rectangle& paper, const TexturePoint& point);
