@@ -5,7 +5,7 @@
 
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/camera.hpp>
-#include <samewhere/twin/office_loop.hpp>
+#include <samewhere/twin/walkthrough.hpp>
 #include <samewhere/twin/people.hpp>
 #include <samewhere/twin/renderer.hpp>
 #include <samewhere/twin/test_room.hpp>
@@ -45,11 +45,12 @@ std::vector<Rectangle> crate(const Eigen::Vector3f& low_m, const Eigen::Vector3f
 }
 
 TEST(Renderer, EveryPixelSeesWhatASingleRayMeets) {
-  const Building building{.rectangles = office_loop_surfaces(3, 0.8)};
-  const RayScene rays(building.rectangles);
+  const Walkthrough walk(parse_spec("twin:office-loop?seed=3"), {.num_frames = 31});
+  const Building& building = *walk.visits().front().building;
+  const RayScene& rays = *walk.visits().front().rays;
   const core::Camera camera = kTwinCamera;
   const Renderer renderer(building, rays, camera);
-  const core::Rigid3 world_from_camera = office_loop_walk(3)[30].world_from_camera;
+  const core::Rigid3 world_from_camera = walk.walk().poses[30].world_from_camera;
   const View view = renderer.render(world_from_camera);
   const Eigen::Vector3f position = world_from_camera.translation.cast<float>();
   int num_seen = 0;
