@@ -196,7 +196,7 @@ Person::Person(const std::vector<Eigen::Vector3d>& path_m, std::uint64_t seed) {
   looks_ = {.skin = cloth(random, Finish::kPaint, colour_of_srgb(skin, 0.8F * skin, 0.68F * skin)),
             .hair = cloth(random, Finish::kPaint, hair_colour(random)),
             .top = cloth(random, kTops[random.index(kTops.size())], any_colour(random, 0.3, 0.95)),
-            .trousers = cloth(random, Finish::kPaint, any_colour(random, 0.2, 0.6)),
+            .trousers = cloth(random, Finish::kPaint, any_colour(random, 0.15, 0.45)),
             .shoes = cloth(random, Finish::kPaint, any_colour(random, 0.1, 0.4)),
             .height_ratio = static_cast<float>(random.uniform(0.92, 1.08)),
             .width_ratio = static_cast<float>(random.uniform(0.92, 1.12))};
