@@ -64,7 +64,7 @@ void add_blot(Piece& piece, const Box& span, Material material) {
 Furnisher::Furnisher(Building& building, int unit, const Style& style, const LightSetting& light)
     : building_(building), unit_(unit), style_(style), light_(light), palette_(style) {}
 
-Piece Furnisher::piece_at(const Stand& stand) {
+Piece Furnisher::piece_at(const Stance& stand) {
   return Piece({building_, unit_, style_, light_, palette_, num_things_++}, stand);
 }
 
@@ -112,7 +112,7 @@ void Furnisher::add_wall(const Wall& wall, float low_m, float high_m, WallFinish
 
 void Furnisher::add_floor(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, float z_m,
                           FloorFinish finish) {
-  Piece piece = piece_at(Stand{});
+  Piece piece = piece_at(Stance{});
   const Palette& p = palette_;
   const auto material = [&] {
     switch (finish) {
@@ -132,7 +132,7 @@ void Furnisher::add_floor(const Eigen::Vector2f& low_m, const Eigen::Vector2f& h
 
 void Furnisher::add_ceiling(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, float z_m,
                             CeilingFinish finish) {
-  Piece piece = piece_at(Stand{});
+  Piece piece = piece_at(Stance{});
   const Colour bar = paints::kWhite;
   const Colour& colour = palette_.ceiling;
   const auto material = [&] {

@@ -103,7 +103,7 @@ class Furnisher {
 
  private:
   // The next thing, at a stand in the unit.
-  Piece piece_at(const Stand& stand);
+  Piece piece_at(const Stance& stand);
   Piece piece_at(const Wall& wall);
   Piece piece_at(const Place& place);
   Piece piece_at(const Spot& spot);

@@ -9,7 +9,7 @@
 namespace samewhere::twin {
 namespace {
 
-Stand world_from_unit(const core::Rigid3& world_from_unit, const Stand& stand) {
+Stance world_from_unit(const core::Rigid3& world_from_unit, const Stance& stand) {
   const Eigen::Matrix3f turn = world_from_unit.rotation.toRotationMatrix().cast<float>();
   return {.origin_m = turn * stand.origin_m + world_from_unit.translation.cast<float>(),
           .axes = turn * stand.axes};
@@ -50,7 +50,7 @@ Box centred(const Eigen::Vector2f& middle_m, const Eigen::Vector2f& size_m,
   return {{low.x(), low.y(), out_m.x()}, {high.x(), high.y(), out_m.y()}};
 }
 
-Piece::Piece(const Site& site, const Stand& stand_in_unit)
+Piece::Piece(const Site& site, const Stance& stand_in_unit)
     : Shapes(site.building.rectangles,
              world_from_unit(
                  site.building.units.at(static_cast<std::size_t>(site.unit)).world_from_unit,

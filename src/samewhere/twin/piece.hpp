@@ -22,7 +22,7 @@ struct Site {
 class Piece : public Shapes {
  public:
   // `stand_in_unit`: the piece takes it into the world.
-  Piece(const Site& site, const Stand& stand_in_unit);
+  Piece(const Site& site, const Stance& stand_in_unit);
 
   Draws& draws() { return draws_; }
   const Palette& palette() const { return site_.palette; }

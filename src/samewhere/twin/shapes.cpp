@@ -17,9 +17,9 @@ Eigen::Vector3f across(const Eigen::Vector3f& along) {
 
 }  // namespace
 
-Stand stand_of(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& right,
-               const Eigen::Vector3f& up) {
-  Stand stand{.origin_m = origin_m};
+Stance stand_of(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& right,
+                const Eigen::Vector3f& up) {
+  Stance stand{.origin_m = origin_m};
   stand.axes << right, up, right.cross(up);
   return stand;
 }

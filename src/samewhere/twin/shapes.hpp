@@ -8,15 +8,15 @@ namespace samewhere::twin {
 
 // Where a thing is and which way it looks. In its coordinates x runs to the right and y upwards, as
 // seen by who stands before it, and z out towards them.
-struct Stand {
+struct Stance {
   Eigen::Vector3f origin_m = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  // columns: right, up, out
 
   Eigen::Vector3f at(const Eigen::Vector3f& point_m) const { return origin_m + axes * point_m; }
 };
 
-Stand stand_of(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& right,
-               const Eigen::Vector3f& up);
+Stance stand_of(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& right,
+                const Eigen::Vector3f& up);
 
 struct Cladding {
   Material front;
@@ -44,7 +44,7 @@ struct Panel {
 // of a thing.
 class Shapes {
  public:
-  Shapes(std::vector<Rectangle>& rectangles, const Stand& stand)
+  Shapes(std::vector<Rectangle>& rectangles, const Stance& stand)
       : rectangles_(rectangles), stand_(stand) {}
 
   // Fixed to something behind it: five faces.
@@ -58,7 +58,7 @@ class Shapes {
 
   // What follows belongs to this object.
   void set_object(int object) { object_ = object; }
-  const Stand& stand() const { return stand_; }
+  const Stance& stand() const { return stand_; }
 
  private:
   void add_face(const Box& box, int axis, float facing, const Material& material);
@@ -66,7 +66,7 @@ class Shapes {
                const Material& material);
 
   std::vector<Rectangle>& rectangles_;
-  Stand stand_;
+  Stance stand_;
   int object_ = -1;
 };
 
