@@ -1,6 +1,7 @@
+#include <algorithm>
 #include <array>
 
-#include <samewhere/twin/furniture.hpp>
+#include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/office_loop.hpp>
 
 namespace samewhere::twin {
@@ -15,46 +16,46 @@ constexpr int kFirstRoom = 301;
 // What stands in the middle of a stretch of wall.
 enum class Bay { kDoor, kWindow };
 
-struct Wall {
-  WallSide side;
+// A stretch of wall between two corners of the plan, from left to right as seen.
+struct Side {
+  Wall wall;
   std::vector<Bay> bays;
 };
 
-std::array<Wall, 8> walls() {
+std::array<Side, 8> sides() {
   const auto d = Bay::kDoor;
   const auto w = Bay::kWindow;
   const float x = kOuter_m.x();
   const float y = kOuter_m.y();
   const float a = kInner_m.x();
   const float b = kInner_m.y();
-  return {{{{{1, 1.0F}, -y, -x, x}, {d, d, d, d, d, d}},
-           {{{0, -1.0F}, x, -y, y}, {d, w, w, d}},
-           {{{1, -1.0F}, y, -x, x}, {d, d, d, d, d, d}},
-           {{{0, 1.0F}, -x, -y, y}, {d, w, w, d}},
-           {{{1, -1.0F}, -b, -a, a}, {d, d, d, d, d}},
-           {{{0, 1.0F}, a, -b, b}, {d, d}},
-           {{{1, 1.0F}, b, -a, a}, {d, d, d, d, d}},
-           {{{0, -1.0F}, -a, -b, b}, {d, d}}}};
+  return {{{{{x, -y}, {-x, -y}, 0.0F, kHeight_m}, {d, d, d, d, d, d}},
+           {{{x, y}, {x, -y}, 0.0F, kHeight_m}, {d, w, w, d}},
+           {{{-x, y}, {x, y}, 0.0F, kHeight_m}, {d, d, d, d, d, d}},
+           {{{-x, -y}, {-x, y}, 0.0F, kHeight_m}, {d, w, w, d}},
+           {{{-a, -b}, {a, -b}, 0.0F, kHeight_m}, {d, d, d, d, d}},
+           {{{a, -b}, {a, b}, 0.0F, kHeight_m}, {d, d}},
+           {{{a, b}, {-a, b}, 0.0F, kHeight_m}, {d, d, d, d, d}},
+           {{{-a, b}, {-a, -b}, 0.0F, kHeight_m}, {d, d}}}};
 }
 
 class Builder {
  public:
   Builder(std::uint64_t seed, double similarity)
-      : furnisher_(rectangles_, seed, similarity), layout_(core::seed_of(seed, "twin.layout", 0)) {}
+      : building_{.units = {Unit{}}},
+        furnisher_(building_, 0,
+                   {.common_seed = seed, .own_seed = ~seed, .similarity = similarity}),
+        layout_(core::seed_of(seed, "twin.layout", 0)) {}
 
   std::vector<Rectangle> build() {
     add_floor_and_ceiling();
-    for (const auto& wall : walls()) add_wall(wall);
+    for (const auto& side : sides()) add_side(side);
     add_ceiling_things();
-    return std::move(rectangles_);
+    return std::move(building_.rectangles);
   }
 
  private:
   void add_floor_and_ceiling() {
-    const Material carpet = furnisher_.fresh(Finish::kCarpet, colour_of_srgb(0.40F, 0.44F, 0.50F),
-                                             colour_of_srgb(0.72F, 0.68F, 0.56F));
-    const Material board = furnisher_.fresh(Finish::kCeiling, colour_of_srgb(0.91F, 0.90F, 0.87F),
-                                            colour_of_srgb(0.94F, 0.94F, 0.93F));
     const Eigen::Vector2f outer = kOuter_m;
     const Eigen::Vector2f inner = kInner_m;
     const std::array<std::array<Eigen::Vector2f, 2>, 4> legs = {
@@ -63,71 +64,37 @@ class Builder {
          {Eigen::Vector2f(inner.x(), -inner.y()), Eigen::Vector2f(outer.x(), inner.y())},
          {Eigen::Vector2f(-outer.x(), -inner.y()), Eigen::Vector2f(-inner.x(), inner.y())}}};
     for (const auto& [low, high] : legs) {
-      const Eigen::Vector2f size = high - low;
-      rectangles_.push_back({.corner_m = {low.x(), low.y(), 0.0F},
-                             .right = Eigen::Vector3f::UnitX(),
-                             .up = Eigen::Vector3f::UnitY(),
-                             .size_m = size,
-                             .pattern_m = low,
-                             .material = carpet});
-      rectangles_.push_back({.corner_m = {low.x(), high.y(), kHeight_m},
-                             .right = Eigen::Vector3f::UnitX(),
-                             .up = -Eigen::Vector3f::UnitY(),
-                             .size_m = size,
-                             .pattern_m = low,
-                             .material = board});
+      furnisher_.add_floor(low, high, 0.0F, FloorFinish::kCarpet);
+      furnisher_.add_ceiling(low, high, kHeight_m, CeilingFinish::kTiles);
     }
   }
 
-  void add_wall(const Wall& wall) {
-    const WallSide& side = wall.side;
-    Eigen::Vector3f low(0.0F, 0.0F, 0.0F);
-    Eigen::Vector3f high(0.0F, 0.0F, kHeight_m);
-    low[side.face.axis] = high[side.face.axis] = side.plane_m;
-    low[1 - side.face.axis] = side.low_m;
-    high[1 - side.face.axis] = side.high_m;
-    const Material paint = furnisher_.fresh(Finish::kWall, colour_of_srgb(0.86F, 0.84F, 0.78F),
-                                            colour_of_srgb(0.66F, 0.70F, 0.70F));
-    for (const auto& face : faces_of({low, high}, side.face, {paint, paint})) {
-      if (face.size_m.minCoeff() > 0.0F &&
-          face.normal()[side.face.axis] * side.face.facing > 0.5F) {
-        rectangles_.push_back(face);
-      }
-    }
-    const auto num_bays = static_cast<float>(wall.bays.size());
-    const float pitch_m = (side.high_m - side.low_m) / num_bays;
-    for (std::size_t i = 0; i < wall.bays.size(); ++i) {
-      const float start_m = side.low_m + pitch_m * static_cast<float>(i);
-      add_bay({side, start_m + 0.5F * pitch_m}, wall.bays[i], pitch_m);
-      const bool is_last = i + 1 == wall.bays.size();
+  void add_side(const Side& side) {
+    furnisher_.add_wall(side.wall, 0.0F, kHeight_m, WallFinish::kBlocks);
+    const float pitch_m =
+        (side.wall.to_m - side.wall.from_m).norm() / static_cast<float>(side.bays.size());
+    for (std::size_t i = 0; i < side.bays.size(); ++i) {
+      const float start_m = pitch_m * static_cast<float>(i);
+      add_bay({side.wall, start_m + 0.5F * pitch_m}, side.bays[i], pitch_m);
+      const bool is_last = i + 1 == side.bays.size();
       if (is_last) continue;
-      const bool has_room = wall.bays[i] == Bay::kDoor && wall.bays[i + 1] == Bay::kDoor;
-      add_decoration({side, start_m + pitch_m}, has_room);
+      const bool has_room = side.bays[i] == Bay::kDoor && side.bays[i + 1] == Bay::kDoor;
+      add_decoration({side.wall, start_m + pitch_m}, has_room);
     }
-    add_cable_duct(side);
+    furnisher_.add_cable_duct(side.wall);
   }
 
   void add_bay(const Place& place, Bay bay, float pitch_m) {
     constexpr float kHalfDoor_m = 0.52F;
     const float half_gap_m = bay == Bay::kDoor ? kHalfDoor_m : 0.0F;
-    const Material rubber = furnisher_.fresh(Finish::kPaint, colour_of_srgb(0.28F, 0.27F, 0.27F),
-                                             colour_of_srgb(0.28F, 0.27F, 0.27F));
     for (const float sign : {-1.0F, 1.0F}) {
-      const Eigen::Vector2f ends_m(place.along_m + sign * half_gap_m,
-                                   place.along_m + sign * 0.5F * pitch_m);
-      furnisher_.add_strip(place.side, {ends_m, {0.0F, 0.09F}, {0.0F, 0.012F}}, rubber);
+      const float near_m = place.along_m + sign * half_gap_m;
+      const float far_m = place.along_m + sign * 0.5F * pitch_m;
+      furnisher_.add_skirting(place.wall, std::min(near_m, far_m), std::max(near_m, far_m));
     }
-    if (bay == Bay::kDoor) {
-      furnisher_.add_door(place, next_room_++);
-    } else {
-      furnisher_.add_window(place);
-    }
-  }
-
-  void add_cable_duct(const WallSide& side) {
-    const Colour grey = colour_of_srgb(0.80F, 0.80F, 0.78F);
-    furnisher_.add_strip(side, {{side.low_m, side.high_m}, {2.38F, 2.43F}, {0.0F, 0.035F}},
-                         furnisher_.fresh(Finish::kPaint, grey, grey));
+    if (bay == Bay::kDoor) return furnisher_.add_door(place, next_room_++);
+    furnisher_.add_window(place, Daylight::kBlinds);
+    furnisher_.add_radiator(place);
   }
 
   // Between two doors or windows; beside windows there is room for narrow things only.
@@ -166,12 +133,12 @@ class Builder {
         const float along = 2.4F * static_cast<float>(i);
         furnisher_.add_ceiling_lamp({sign * x, along}, {0.3F, 1.2F}, kHeight_m);
       }
-      furnisher_.add_exit_sign({sign * 5.4F, sign * y}, {0.03F, 0.5F}, kHeight_m);
-      furnisher_.add_exit_sign({sign * x, -sign * 2.4F + 1.2F}, {0.5F, 0.03F}, kHeight_m);
+      furnisher_.add_exit_sign({sign * 5.4F, sign * y}, 0.0F, kHeight_m);
+      furnisher_.add_exit_sign({sign * x, -sign * 2.4F + 1.2F}, 1.5708F, kHeight_m);
     }
   }
 
-  std::vector<Rectangle> rectangles_;
+  Building building_;
   Furnisher furnisher_;
   core::Random layout_;  // of its own: what stands where does not depend on similarity
   int next_room_ = kFirstRoom;

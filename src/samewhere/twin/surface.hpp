@@ -15,19 +15,35 @@ using Colour = Eigen::Array3f;
 Colour colour_of_srgb(float red, float green, float blue);
 
 enum class Finish : std::uint8_t {
-  kWall,     // painted plaster with a darker dado
-  kCarpet,   // tiles
-  kCeiling,  // mineral fibre tiles
-  kWood,     // door leaves, frames of boards
-  kPaint,    // painted metal
-  kSteel,    // brushed metal
-  kPlate,    // room number
-  kCork,     //
-  kPaper,    // posters and notices
-  kSign,     // plain pictogram
-  kLamp,     // emits light
-  kBlinds,   // a window with its blinds down, emits light
-  kGrille,   // slots: vents, radiators
+  kWall,        // painted blocks with a darker dado
+  kCarpet,      // tiles
+  kCeiling,     // mineral fibre tiles
+  kWood,        // door leaves, table tops, frames of boards
+  kPaint,       // painted metal
+  kSteel,       // brushed metal
+  kPlate,       // room number
+  kCork,        //
+  kPaper,       // posters and notices
+  kSign,        // plain pictogram, which one: `number`
+  kLamp,        // emits light
+  kBlinds,      // a window with its blinds down, emits light
+  kGrille,      // slots: vents, radiators
+  kPlaster,     // painted with a roller: walls, ceilings
+  kBrick,       // painted over
+  kConcrete,    // cast between boards; floors too
+  kFloorTiles,  // 30 cm
+  kPlanks,      // a wooden floor
+  kFabric,      // cloth: plain, stripes or checks by `number`
+  kPlastic,     // moulded: shells of chairs, switches, bins
+  kLeaf,        // of a plant, its rib along `up`
+  kSoil,        //
+  kSkin,        //
+  kHair,        // its strands along `up`
+  kCarton,      // corrugated board with tape
+  kLabel,       // bar code and small print
+  kView,        // a window with what is outside, emits light
+  kBooks,       // their backs side by side
+  kBigNumber,   // `number` as high as the rectangle
 };
 
 // What a surface is made of. Every finish reads the part that it needs.
@@ -39,8 +55,9 @@ struct Material {
   std::uint32_t pattern_seed = 0;      // grain, print: the same on look-alikes
   std::uint32_t own_pattern_seed = 0;  // mixed in by own_ratio
   float own_ratio = 0.0F;
-  int number = 0;         // of the room
-  float radiance = 0.0F;  // of emitting finishes
+  int number = 0;               // of the room, the floor, the pictogram, the kind of cloth
+  float radiance = 0.0F;        // of emitting finishes
+  std::uint32_t blot_seed = 0;  // a big stain or scratch in the middle; 0: none
 };
 
 // A rectangle seen from one side. Metres; the world's z is up.
@@ -66,24 +83,10 @@ struct Rectangle {
   }
 };
 
+// Corners of a block in the coordinates of the thing that it is a part of.
 struct Box {
   Eigen::Vector3f low_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f high_m = Eigen::Vector3f::Zero();
 };
-
-// Which way a surface looks: +1 or -1 along an axis.
-struct Face {
-  int axis = 2;
-  float facing = 1.0F;
-};
-
-struct Materials {
-  Material front;
-  Material sides;
-};
-
-// The five faces that are seen of a box that is fixed to something behind it. Patterns of level
-// faces run on in the world's coordinates.
-std::vector<Rectangle> faces_of(const Box& box, const Face& front, const Materials& materials);
 
 }  // namespace samewhere::twin

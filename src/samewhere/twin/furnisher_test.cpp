@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <samewhere/twin/furniture.hpp>
+#include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/office_loop.hpp>
 #include <samewhere/twin/texture.hpp>
 
