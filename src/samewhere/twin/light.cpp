@@ -142,7 +142,7 @@ void uncover(SurfaceColours& colours, int r) {
 }
 
 // The value between points of a coarser grid that are `step` apart; nothing if they differ so much
-// that light changes there, or if a point lies on the coarser grid.
+// that light changes there.
 std::optional<Colour> between(SurfaceColours& colours, int r, const Eigen::Array2i& at,
                               const Eigen::Array2i& step) {
   constexpr float kAlike_ratio = 0.06F;
@@ -160,6 +160,34 @@ std::optional<Colour> between(SurfaceColours& colours, int r, const Eigen::Array
   }
   if (is_buried(least) || (most - least > kAlike + kAlike_ratio * most).any()) return std::nullopt;
   return 0.25F * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
+// Between points of a grid, columns and rows.
+struct Steps {
+  Eigen::Array2i fine = Eigen::Array2i::Ones();
+  Eigen::Array2i coarser = Eigen::Array2i::Zero();  // of the grid before it; 0: there was none
+};
+
+// The points of the fine grid that were not on the coarser one.
+template <class Visit>
+void for_each_new_point(const SurfaceColours& colours, int r, const Steps& steps,
+                        const Visit& visit) {
+  for (int row = 0; row < colours.rows(r).num_points; row += steps.fine.y()) {
+    for (int column = 0; column < colours.columns(r).num_points; column += steps.fine.x()) {
+      const Eigen::Array2i at(column, row);
+      const bool is_new =
+          steps.coarser.x() == 0 || (at != at / steps.coarser * steps.coarser).any();
+      if (is_new) visit(at);
+    }
+  }
+}
+
+// What follows from points that are known already.
+std::optional<Colour> known_value(SurfaceColours& colours, int r, const Eigen::Array2i& at,
+                                  const Eigen::Array2i& coarser) {
+  if (colours.columns(r).is_thin && at.x() > 0) return colours.value(r, 0, at.y());
+  if (colours.rows(r).is_thin && at.y() > 0) return colours.value(r, at.x(), 0);
+  return coarser.x() > 0 ? between(colours, r, at, coarser) : std::nullopt;
 }
 
 }  // namespace
@@ -199,31 +227,25 @@ void Light::fill(SurfaceColours& colours, const Compute& compute) const {
 // From coarse to fine.
 template <class Compute>
 void Light::fill_rectangle(SurfaceColours& colours, int r, const Compute& compute) const {
-  const SurfaceColours::Axis& columns = colours.columns(r);
-  const SurfaceColours::Axis& rows = colours.rows(r);
-  Eigen::Array2i coarser(0, 0);
-  const auto value_at = [&](const Eigen::Array2i& at) -> Colour {
-    if (columns.is_thin && at.x() > 0) return colours.value(r, 0, at.y());
-    if (rows.is_thin && at.y() > 0) return colours.value(r, at.x(), 0);
-    if (coarser.x() > 0) {
-      if (const auto value = between(colours, r, at, coarser)) return *value;
-    }
-    const SurfacePoint point = surface_point(rectangles_[static_cast<std::size_t>(r)],
-                                             colours.position(r, at.x(), at.y()));
-    return covers(point) ? kBuried : compute(point);
-  };
-  for (int step = std::max(columns.coarse_step, rows.coarse_step); step > 0; step /= 2) {
-    const Eigen::Array2i fine(std::min(step, columns.coarse_step),
-                              std::min(step, rows.coarse_step));
-    for (int row = 0; row < rows.num_points; row += fine.y()) {
-      for (int column = 0; column < columns.num_points; column += fine.x()) {
-        const Eigen::Array2i at(column, row);
-        const bool is_known = coarser.x() > 0 && (at == at / coarser * coarser).all();
-        if (!is_known) colours.value(r, column, row) = value_at(at);
-      }
-    }
-    coarser = fine;
+  const int column_step = colours.columns(r).coarse_step;
+  const int row_step = colours.rows(r).coarse_step;
+  Steps steps;
+  for (int step = std::max(column_step, row_step); step > 0; step /= 2) {
+    steps.fine = {std::min(step, column_step), std::min(step, row_step)};
+    for_each_new_point(colours, r, steps, [&](const Eigen::Array2i& at) {
+      const auto known = known_value(colours, r, at, steps.coarser);
+      colours.value(r, at.x(), at.y()) =
+          known ? *known : value_at_point(colours.position(r, at.x(), at.y()), r, compute);
+    });
+    steps.coarser = steps.fine;
   }
+}
+
+template <class Compute>
+Colour Light::value_at_point(const Eigen::Vector2f& right_up_m, int r,
+                             const Compute& compute) const {
+  const SurfacePoint point = surface_point(rectangles_[static_cast<std::size_t>(r)], right_up_m);
+  return covers(point) ? kBuried : compute(point);
 }
 
 // Whether something stands on this point: straight ahead one then sees its back from within.

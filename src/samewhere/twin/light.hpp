@@ -44,6 +44,9 @@ class Light {
   void fill(SurfaceColours& colours, const Compute& compute) const;
   template <class Compute>
   void fill_rectangle(SurfaceColours& colours, int rectangle, const Compute& compute) const;
+  template <class Compute>
+  Colour value_at_point(const Eigen::Vector2f& right_up_m, int rectangle,
+                        const Compute& compute) const;
   bool covers(const SurfacePoint& point) const;
   Colour light_from(const Emitter& emitter, const SurfacePoint& point) const;
   Colour light_from(const std::vector<Emitter>& emitters, const SurfacePoint& point) const;

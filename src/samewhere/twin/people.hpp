@@ -5,35 +5,24 @@
 
 #include <Eigen/Core>
 
+#include <samewhere/twin/figures.hpp>
 #include <samewhere/twin/surface.hpp>
 
 namespace samewhere::twin {
 
-// Somebody who walks to and fro along a path, on the right side of it: a figure of jointed prisms
-// in clothes of their own.
+// Somebody who walks to and fro along a path, on the right side of it.
 class Person {
  public:
   // Points on the floor, at least two, metres. Looks, pace and where they are at 0 s follow from
   // the seed.
   Person(const std::vector<Eigen::Vector3d>& path_m, std::uint64_t seed);
 
-  // What there is to see of them at a time: about two hundred rectangles.
+  // What there is to see of them at a time.
   std::vector<Rectangle> at(double stamp_s) const;
   // Where they stand, on the floor.
   Eigen::Vector3d position_m(double stamp_s) const;
 
  private:
-  struct Looks {
-    Material skin;
-    Material hair;
-    Material top;
-    Material trousers;
-    Material shoes;
-    float height_ratio = 1.0F;  // over 1.75 m
-    float width_ratio = 1.0F;
-  };
-  class Figure;
-
   Eigen::Vector3d smooth_point(double distance_m) const;
   Eigen::Vector3d point(double distance_m) const;
   double distance_m(double stamp_s) const { return start_m_ + speed_m_s_ * stamp_s; }
@@ -42,7 +31,7 @@ class Person {
   std::vector<double> reached_m_;         // distance from the first point at each
   double speed_m_s_ = 1.2;
   double start_m_ = 0.0;
-  Looks looks_;
+  Look look_;
 };
 
 // Several people, spread over the paths in turn.
