@@ -123,8 +123,8 @@ Eye::Eye(const core::Camera& camera) : camera_(camera) {
 }
 
 Vector2f Eye::at_of(int cell, const Vector2f& in_cell) const {
-  const Vector2f index(static_cast<float>(cell % num_columns_),
-                       static_cast<float>(cell / num_columns_));
+  const int row = cell / num_columns_;
+  const Vector2f index(static_cast<float>(cell % num_columns_), static_cast<float>(row));
   return (index + in_cell) / kCellsPerUnit - half_size_;
 }
 
