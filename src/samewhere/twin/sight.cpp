@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/sight.hpp>
@@ -61,6 +62,37 @@ const Rectangle& rectangle_of(const Sight& sight, int surface) {
   return sight.building->rectangles[static_cast<std::size_t>(surface)];
 }
 
+// What the ray meets first of the surfaces around the cell. `own`, a surface at the ray's end, is
+// not asked.
+Hit first_around(const Sight& match, const SeenCell& cell, const Ray& ray, int own) {
+  Hit first;
+  const auto around = std::span(match.around)
+                          .subspan(static_cast<std::size_t>(cell.first_around),
+                                   static_cast<std::size_t>(cell.num_around));
+  for (const int surface : around) {
+    if (surface == kNothing || surface == own) continue;
+    const auto reach = reach_of(ray, rectangle_of(match, surface));
+    if (reach && (first.rectangle == kNothing || *reach < first.reach)) first = {surface, *reach};
+  }
+  return first;
+}
+
+// What the match sees on the way to a point, `ray` ending there; `own` is the point's surface if it
+// is known to be there, else kNothing.
+Hit hit_towards(const Sight& match, const SeenCell& cell, const Ray& ray, int own) {
+  if (cell.num_around == 0) {
+    if (cell.surface == kNothing) return {};
+    if (cell.surface == own) return {own, 1.0F};
+    return {cell.surface, reach_of_plane(ray, rectangle_of(match, cell.surface))};
+  }
+  const Hit first = first_around(match, cell, ray, own);
+  if (first.rectangle != kNothing && first.reach < kJustBefore) return first;
+  if (own != kNothing) return {own, 1.0F};
+  if (first.rectangle != kNothing && first.reach < kJustBehind) return first;
+  // a surface too narrow for the raster may stand before what is behind the point
+  return match.rays->first_hit(ray).value_or(Hit{});
+}
+
 }  // namespace
 
 Viewpoint viewpoint_of(const core::Rigid3& world_from_camera) {
@@ -91,8 +123,8 @@ Eye::Eye(const core::Camera& camera) : camera_(camera) {
 }
 
 Vector2f Eye::at_of(int cell, const Vector2f& in_cell) const {
-  const Vector2f index(static_cast<float>(cell % num_columns_),
-                       static_cast<float>(cell / num_columns_));
+  const int row = cell / num_columns_;
+  const Vector2f index(static_cast<float>(cell % num_columns_), static_cast<float>(row));
   return (index + in_cell) / kCellsPerUnit - half_size_;
 }
 
@@ -131,7 +163,7 @@ Sight Eye::look(const core::Rigid3& world_from_camera, const Visit& visit) const
       sight.points.push_back({point, r.normal(), surface});
     }
   }
-  mark_edges(sight.cells);
+  list_around(sight);
   return sight;
 }
 
@@ -144,12 +176,22 @@ std::array<std::size_t, 9> Eye::block_around(int cell) const {
   return block;
 }
 
-void Eye::mark_edges(std::vector<SeenCell>& cells) const {
+void Eye::list_around(Sight& sight) const {
   for (const int cell : cells_in_picture_) {
-    SeenCell& middle = cells[static_cast<std::size_t>(cell)];
+    SeenCell& middle = sight.cells[static_cast<std::size_t>(cell)];
+    middle.first_around = static_cast<int>(sight.around.size());
+    const auto first = sight.around.end() - sight.around.begin();
     for (const std::size_t other : block_around(cell)) {
-      middle.is_at_edge = middle.is_at_edge || cells[other].surface != middle.surface;
+      const int surface = sight.cells[other].surface;
+      const auto begin = sight.around.begin() + first;
+      if (std::find(begin, sight.around.end(), surface) == sight.around.end()) {
+        sight.around.push_back(surface);
+      }
     }
+    middle.num_around = static_cast<int>(sight.around.size()) - middle.first_around;
+    if (middle.num_around > 1) continue;
+    middle.num_around = 0;
+    sight.around.resize(static_cast<std::size_t>(first));
   }
 }
 
@@ -167,37 +209,6 @@ std::optional<int> Eye::cell_at(const Vector2f& at) const {
   return is_inside ? std::optional(cell) : std::nullopt;
 }
 
-// What the ray meets first of the surfaces that the cells around show.
-Hit Eye::first_around(const Sight& match, int cell, const Ray& ray) const {
-  Hit first;
-  int last_tried = kNothing;
-  for (const std::size_t other : block_around(cell)) {
-    const int candidate = match.cells[other].surface;
-    if (candidate == last_tried) continue;
-    last_tried = candidate;
-    if (candidate == kNothing) continue;
-    const auto reach = reach_of(ray, rectangle_of(match, candidate));
-    if (reach && (first.rectangle == kNothing || *reach < first.reach)) first = {candidate, *reach};
-  }
-  return first;
-}
-
-// What the match sees on the way to a point, `ray` ending there; `own` is the point's surface if it
-// is known to be there, else kNothing.
-Hit Eye::hit_towards(const Sight& match, int cell, const Ray& ray, int own) const {
-  const SeenCell& middle = match.cells[static_cast<std::size_t>(cell)];
-  if (!middle.is_at_edge) {
-    if (middle.surface == kNothing) return {};
-    return {middle.surface, reach_of_plane(ray, rectangle_of(match, middle.surface))};
-  }
-  const Hit first = first_around(match, cell, ray);
-  if (first.rectangle != kNothing && first.reach < kJustBefore) return first;
-  if (own != kNothing) return {own, 1.0F};
-  if (first.rectangle != kNothing && first.reach < kJustBehind) return first;
-  // a surface too narrow for the raster may stand before what is behind the point
-  return match.rays->first_hit(ray).value_or(Hit{});
-}
-
 // The surface that the match sees where the point is; kNothing if it does not see the point.
 int Eye::surface_found(const Sight& match, const Viewpoint& viewpoint, const SeenPoint& point,
                        bool is_in_same_world) const {
@@ -210,7 +221,8 @@ int Eye::surface_found(const Sight& match, const Viewpoint& viewpoint, const See
   if (!cell) return kNothing;
   const Ray ray{match.viewpoint.position_m,
                 match.viewpoint.camera_from_world.transpose() * in_camera};
-  const Hit hit = hit_towards(match, *cell, ray, is_in_same_world ? point.surface : kNothing);
+  const Hit hit = hit_towards(match, match.cells[static_cast<std::size_t>(*cell)], ray,
+                              is_in_same_world ? point.surface : kNothing);
   if (hit.rectangle == kNothing) return kNothing;
   const float depth_error_m = std::abs(hit.reach - 1.0F) * in_camera.z();
   return depth_error_m <= tolerance_m(in_camera.z()) ? hit.rectangle : kNothing;

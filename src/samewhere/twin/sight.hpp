@@ -34,8 +34,10 @@ struct SeenPoint {
 };
 
 struct SeenCell {
-  int surface = -1;         // at its middle; -1: nothing, or outside of the picture
-  bool is_at_edge = false;  // a cell beside it shows another surface
+  int surface = -1;  // at its middle; -1: nothing, or outside of the picture
+  // The surfaces that it and the eight cells around show, in Sight::around; none if it is but one.
+  int first_around = 0;
+  int num_around = 0;
 };
 
 // What one frame sees: points to ask others about, and surfaces to answer with.
@@ -45,6 +47,7 @@ struct Sight {
   Viewpoint viewpoint;
   std::vector<SeenPoint> points;  // where the 20 x 15 asking rays end
   std::vector<SeenCell> cells;    // of the eye's raster, row by row
+  std::vector<int> around;        // surfaces
   Eigen::AlignedBox3f reach_m;    // around everything that is seen
 };
 
@@ -72,10 +75,8 @@ class Eye {
   Eigen::Vector2f at_of(int cell, const Eigen::Vector2f& in_cell) const;
   Part part_of_picture(int cell) const;
   std::array<std::size_t, 9> block_around(int cell) const;
-  void mark_edges(std::vector<SeenCell>& cells) const;
+  void list_around(Sight& sight) const;
   std::optional<int> cell_at(const Eigen::Vector2f& at) const;
-  Hit first_around(const Sight& match, int cell, const Ray& ray) const;
-  Hit hit_towards(const Sight& match, int cell, const Ray& ray, int own) const;
   int surface_found(const Sight& match, const Viewpoint& viewpoint, const SeenPoint& point,
                     bool is_in_same_world) const;
 

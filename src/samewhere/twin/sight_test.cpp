@@ -108,9 +108,11 @@ Building hall(core::Random& random) {
     const Eigen::Vector3f size(static_cast<float>(random.uniform(0.2, 1.0)),
                                static_cast<float>(random.uniform(0.2, 1.0)),
                                static_cast<float>(random.uniform(0.5, 2.5)));
-    for (const Face front : {Face{0, 1.0F}, Face{0, -1.0F}}) {
-      const auto faces = faces_of({low, low + size}, front, {});
-      building.rectangles.insert(building.rectangles.end(), faces.begin(), faces.end());
+    for (Rectangle face : testing::inside_of(size)) {
+      // its back, from outside
+      face.corner_m = face.at({face.size_m.x(), 0.0F}) + low;
+      face.right = -face.right;
+      building.rectangles.push_back(face);
     }
   }
   return building;

@@ -186,13 +186,13 @@ void make_room_for_matrices(WalkTruth& truth) {
   truth.places = core::PlaceTruthMatrix{static_cast<int>(n), std::vector<core::PlaceTruth>(n * n)};
 }
 
-// `query` and `match` are indices of the matrices.
-void write_pair(std::pair<std::size_t, std::size_t> query_match, const Shares& overlap,
-                core::PlaceTruth place, WalkTruth& truth) {
+void write_pair(const core::FramePair& pair, const Shares& overlap, core::PlaceTruth place,
+                WalkTruth& truth) {
   const auto rounded = [](double share) {
     return static_cast<std::uint8_t>(std::lround(255.0 * share));
   };
-  const auto [query, match] = query_match;
+  const auto query = static_cast<std::size_t>(pair.query);
+  const auto match = static_cast<std::size_t>(pair.match);
   const std::size_t n = truth.frames.size();
   truth.overlap[query * n + match] = rounded(overlap.query_by_match);
   truth.overlap[match * n + query] = rounded(overlap.match_by_query);
@@ -200,23 +200,27 @@ void write_pair(std::pair<std::size_t, std::size_t> query_match, const Shares& o
   truth.places->values[match * n + query] = place;
 }
 
+// Writes down whether a pair is a loop or an impostor; `kin` are those of the query, by visit.
+void register_pair(const Judge& judge, const Judged& query, const Judged& match,
+                   const std::vector<std::vector<Kin>>& kin, WalkTruth& truth) {
+  const Shares overlap = judge.overlap(query, match);
+  const core::PlaceTruth place = place_truth(overlap, query, match);
+  if (truth.places) write_pair({query.frame, match.frame}, overlap, place, truth);
+  if (place == core::PlaceTruth::kSame && query.stamp_s - match.stamp_s >= kMinLoop_s) {
+    truth.loops.push_back(judge.loop(query, match, overlap.smaller()));
+  }
+  if (place == core::PlaceTruth::kDifferent && match.where.visit != kDark) {
+    const double alike =
+        judge.alike(query, match, kin[static_cast<std::size_t>(match.where.visit)]);
+    if (alike > 0.0) truth.impostors.push_back({query.frame, match.frame, alike});
+  }
+}
+
 void judge_pairs(const Judge& judge, const std::vector<Judged>& frames, WalkTruth& truth) {
-  for (std::size_t q = 0; q < frames.size(); ++q) {
-    const Judged& query = frames[q];
-    const std::vector<std::vector<Kin>> kin = judge.kin_by_visit(query);
-    for (std::size_t m = 0; m <= q; ++m) {
-      const Judged& match = frames[m];
-      const Shares overlap = judge.overlap(query, match);
-      const core::PlaceTruth place = place_truth(overlap, query, match);
-      if (truth.places) write_pair({q, m}, overlap, place, truth);
-      if (place == core::PlaceTruth::kSame && query.stamp_s - match.stamp_s >= kMinLoop_s) {
-        truth.loops.push_back(judge.loop(query, match, overlap.smaller()));
-      }
-      if (place == core::PlaceTruth::kDifferent && match.where.visit != kDark) {
-        const double alike =
-            judge.alike(query, match, kin[static_cast<std::size_t>(match.where.visit)]);
-        if (alike > 0.0) truth.impostors.push_back({query.frame, match.frame, alike});
-      }
+  for (std::size_t query = 0; query < frames.size(); ++query) {
+    const std::vector<std::vector<Kin>> kin = judge.kin_by_visit(frames[query]);
+    for (std::size_t match = 0; match <= query; ++match) {
+      register_pair(judge, frames[query], frames[match], kin, truth);
     }
   }
 }
