@@ -33,7 +33,7 @@ enum class WallFinish { kBlocks, kPlaster, kConcrete, kBrick };
 enum class FloorFinish { kCarpet, kTiles, kConcrete, kWood };
 enum class CeilingFinish { kTiles, kPlaster, kConcrete };
 enum class Daylight { kBlinds, kView };
-enum class Pictogram { kArrow, kStairs, kLift, kToilet };
+enum class Pictogram { kArrow, kStairs, kLift, kToilet, kExtinguisher };
 
 // A rack of shelves for pallets.
 struct RackSize {

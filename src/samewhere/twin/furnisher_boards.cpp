@@ -30,7 +30,7 @@ void Furnisher::add_notice_board(const Place& place) {
     piece.begin_part(slot);
     const Eigen::Vector2f shift_m{draws.shift(0.03F), draws.shift(0.035F)};
     const bool is_wide = draws.happens(0.3);
-    const bool is_there = draws.happens(0.8);
+    const bool is_there = draws.happens(0.85);
     const auto column = static_cast<float>(slot % kNumColumns);
     const auto row = static_cast<float>(slot / kNumColumns);
     const Eigen::Vector2f middle_m(-0.41F + 0.27F * column, 1.32F + 0.4F * row);
@@ -64,7 +64,8 @@ void Furnisher::add_extinguisher(const Place& place) {
   const Material black = piece.made_of(Finish::kPlastic, paints::kBlack);
   const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
   const Material label = piece.made_of(Finish::kLabel, paints::kWhite, paints::kRed);
-  const Material sign = piece.made_of(Finish::kSign, paints::kRed, paints::kWhite);
+  Material sign = piece.made_of(Finish::kSign, paints::kRed, paints::kWhite);
+  sign.number = static_cast<int>(Pictogram::kExtinguisher);
   constexpr float kOut_m = 0.105F;
   piece.begin_object("extinguisher");
   piece.add_bar({.from_m = {0.0F, 0.5F, kOut_m},

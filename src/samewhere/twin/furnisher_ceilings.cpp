@@ -26,7 +26,7 @@ void Furnisher::add_high_bay_lamp(const Eigen::Vector2f& middle_m, float ceiling
   Piece piece = piece_below(middle_m, ceiling_m);
   Material light = piece.made_of(Finish::kLamp, paints::kLampWhite);
   // lights a hall from high up
-  light.radiance = 6.0F * kLampRadiance * piece.light().lamps;
+  light.radiance = 16.0F * kLampRadiance * piece.light().lamps;
   const Material body = piece.made_of(Finish::kPaint, paints::kGrey);
   piece.begin_object("high bay lamp");
   piece.add_bar({.to_m = {0.0F, 0.0F, kDrop_m}, .radius_m = 0.008F, .num_sides = 6}, body);

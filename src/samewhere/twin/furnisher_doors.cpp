@@ -174,7 +174,7 @@ void Furnisher::add_window(const Place& place, Daylight daylight) {
   const Material stone = piece.made_of(Finish::kConcrete, paints::kWhite);
   const bool is_open = daylight == Daylight::kView;
   Material pane = piece.made_of(is_open ? Finish::kView : Finish::kBlinds, paints::kDaylight);
-  constexpr float kSky = 2.2F;
+  constexpr float kSky = 1.4F;
   constexpr float kBlinds = 1.3F;
   pane.radiance = piece.light().daylight * (is_open ? kSky : kBlinds);
   piece.begin_object("window");
