@@ -12,14 +12,26 @@ constexpr float kPlateEnd_m = 0.78F;  // right of the middle of a door
 constexpr float kHalfWindow_m = 0.80F;
 constexpr float kMargin_m = 0.06F;  // between one thing and the next
 
-// Look-alikes are units of one kind. `what` keeps the draws for one purpose apart from others.
-Style style_of(const Draft& draft, int unit, std::string_view what) {
-  const int kind = draft.plan.units()[static_cast<std::size_t>(unit)].kind;
-  const std::uint64_t seed = core::seed_of(draft.spec.seed, what, 0);
-  return {.common_seed = core::seed_of(seed, "twin.kind", static_cast<std::uint64_t>(kind)),
-          .own_seed = core::seed_of(seed, "twin.unit", static_cast<std::uint64_t>(unit)),
-          .similarity = draft.spec.similarity,
+int kind_of(const Draft& draft, int unit) {
+  return draft.plan.units()[static_cast<std::size_t>(unit)].kind;
+}
+
+// Colours are common to the whole building.
+Style style_of(const Draft& draft, int unit) {
+  const Spec& spec = draft.spec;
+  return {.common_seed = core::seed_of(spec.seed, spec.preset, 0),
+          .own_seed = core::seed_of(spec.seed, spec.preset, 1 + static_cast<std::uint64_t>(unit)),
+          .similarity = spec.similarity,
           .visit = draft.visit.index};
+}
+
+// What hangs where is common to the units of one kind.
+Style layout_of(const Draft& draft, int unit) {
+  const Style style = style_of(draft, unit);
+  const auto kind = static_cast<std::uint64_t>(kind_of(draft, unit));
+  return {.common_seed = core::seed_of(style.common_seed, "twin.layout", kind),
+          .own_seed = core::seed_of(style.own_seed, "twin.layout", 0),
+          .similarity = style.similarity};
 }
 
 float length_of(const Wall& wall) { return (wall.to_m - wall.from_m).norm(); }
@@ -116,9 +128,12 @@ void add_filling(Furnisher& furnisher, Filling filling, const Place& place) {
 Dresser::Dresser(Draft& draft, int unit)
     : plan_(draft.plan),
       unit_(unit),
-      style_(style_of(draft, unit, "twin.layout")),
+      layout_(layout_of(draft, unit)),
       is_later_visit_(draft.visit.index > 0),
-      furnisher_(draft.building, unit, style_of(draft, unit, "twin.looks"), draft.visit.light) {
+      furnisher_(draft.building, unit, style_of(draft, unit), draft.visit.light) {
+  // things of other kinds of units draw for themselves
+  constexpr int kMaxThings = 1000;
+  for (int i = 0; i < kMaxThings * kind_of(draft, unit); ++i) furnisher_.skip_thing();
   add_surfaces();
 }
 
@@ -186,7 +201,7 @@ void Dresser::add_bay(const Place& place, Use use) {
 
 // Takes the same number of things whatever is chosen: look-alikes stay in step.
 void Dresser::fill_gap(const Gap& gap) {
-  Draws draws(style_, num_gaps_++);
+  Draws draws(layout_, num_gaps_++);
   std::vector<Filling> fitting;
   float widest_m = 0.0F;
   for (const auto& [filling, width_m, depth_m] : kFillings) {
@@ -286,7 +301,9 @@ void Dresser::furnish_office(int space, int window_side) {
 void Dresser::furnish_lounge(int space, int sofa_side) {
   const auto far = static_cast<std::size_t>(sofa_side);
   Dress walls{.max_depth_m = 0.05F, .has_ducts = false};
+  walls.sides = {Use::kWindows, Use::kWindows, Use::kWindows, Use::kWindows};
   walls.sides[far] = Use::kBare;
+  walls.pitch_m = 2.2F;
   dress(space, walls);
   const Wall back = wall_of(space, sofa_side);
   const float middle_m = 0.5F * length_of(back);

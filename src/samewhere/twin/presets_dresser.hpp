@@ -58,7 +58,7 @@ class Dresser {
   // Desk, chair and shelves; `window_side` is the side across from the door. At a later visit
   // chairs and bins have moved and the plant is gone.
   void furnish_office(int space, int window_side);
-  // Sofa, table, chairs and plants along one side.
+  // Sofa, table, chair and plant along one side, windows left and right of it.
   void furnish_lounge(int space, int sofa_side);
   // Handrails and lamps of a stair built by add_u_stair() at this corner.
   void dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m);
@@ -79,7 +79,7 @@ class Dresser {
 
   const Plan& plan_;
   int unit_;
-  Style style_;
+  Style layout_;
   bool is_later_visit_;
   Furnisher furnisher_;
   std::uint64_t num_gaps_ = 0;

@@ -181,9 +181,6 @@ void walk_edge(Route& route, const Graph& graph, int from, int to) {
   walk(route, {graph.node(to).position_m});
 }
 
-// Time lost in each bend, on average.
-constexpr double kBend_s = 0.5;
-
 Route random_walk(std::uint64_t seed, double duration_s) {
   const Graph graph;
   core::Random random(core::seed_of(seed, "twin.long_haul", 0));
@@ -199,7 +196,7 @@ Route random_walk(std::uint64_t seed, double duration_s) {
     walk_edge(route, graph, here, next);
     before = here;
     here = next;
-    time_s = estimated_duration_s(route) + kBend_s * static_cast<double>(route.steps.size());
+    time_s = estimated_duration_s(route);
   }
   return route;
 }

@@ -9,6 +9,10 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
+double turn_between(double from_rad, double to_rad) {
+  return std::abs(std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi));
+}
+
 // Adds up the time of one step after the other.
 struct Stopwatch {
   double speed_m_s;
@@ -17,15 +21,18 @@ struct Stopwatch {
   double sum_s = 0.0;
 
   void operator()(const WalkTo& step) {
+    constexpr double kBend_s_rad = 0.65 / (90.0 * kDegree);
+    constexpr double kOnStairs = 1.4;
     const Eigen::Vector3d way_m = step.position_m - position_m;
+    const double before_rad = heading_rad;
     if (way_m.head<2>().norm() > 0.0) heading_rad = std::atan2(way_m.y(), way_m.x());
-    sum_s += way_m.norm() / speed_m_s;
+    sum_s += (way_m.z() == 0.0 ? 1.0 : kOnStairs) * way_m.norm() / speed_m_s;
+    sum_s += kBend_s_rad * turn_between(before_rad, heading_rad);
     position_m = step.position_m;
   }
   void operator()(const TurnTo& step) {
     constexpr double kTurn_rad_s = 80.0 * kDegree;
-    const double turn_rad = std::remainder(step.heading_rad - heading_rad, 2.0 * std::numbers::pi);
-    sum_s += std::abs(turn_rad) / kTurn_rad_s;
+    sum_s += turn_between(heading_rad, step.heading_rad) / kTurn_rad_s;
     heading_rad = step.heading_rad;
   }
   void operator()(const Stand& step) { sum_s += step.duration_s; }

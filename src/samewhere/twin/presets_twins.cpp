@@ -80,7 +80,7 @@ Side add_side(Plan& plan, int num_quarter_turns) {
   const int unit = plan.add_unit(0, {.num_quarter_turns = num_quarter_turns});
   Side side{.unit = unit};
   side.wing =
-      plan.add({.name = "wing", .unit = unit, .low_m = {-13.5F, -1.1F}, .high_m = {-4.7F, 1.1F}});
+      plan.add({.name = "wing", .unit = unit, .low_m = {-13.0F, -1.1F}, .high_m = {-4.7F, 1.1F}});
   side.lobby = plan.add({.name = "lobby",
                          .unit = unit,
                          .low_m = {-4.7F, -3.7F},
@@ -125,7 +125,7 @@ World mirror(const Spec& spec) {
   furnish_side(draft, east, 201);
 
   World world{.visits = {std::move(draft.building)}};
-  constexpr double kEnd_m = 10.4;
+  constexpr double kEnd_m = 9.8;
   constexpr double kLobby_m = 3.6;
   constexpr double kHall_m = 2.6;
   Route& route = world.route;
