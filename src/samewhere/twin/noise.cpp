@@ -10,7 +10,8 @@ struct Cell {
   std::uint32_t hash = 0;
 };
 
-Cell cell_at(const TexturePoint& p, float cell_m, std::uint32_t seed) {
+template <class Seed>
+Cell cell_at(const TexturePoint& p, float cell_m, const Seed& seed) {
   const float u = p.u_m / cell_m;
   const float v = p.v_m / cell_m;
   const int iu = floor_int(u);
@@ -24,7 +25,8 @@ float byte_ratio(std::uint32_t hash, int byte) {
 
 }  // namespace
 
-float spots(const TexturePoint& p, const Strewn& strewn, std::uint32_t seed) {
+template <class Seed>
+float spots(const TexturePoint& p, const Strewn& strewn, const Seed& seed) {
   const float pixel = p.footprint_m / strewn.cell_m;
   if (pixel > 0.6F) return 0.0F;
   const Cell cell = cell_at(p, strewn.cell_m, seed);
@@ -39,7 +41,8 @@ float spots(const TexturePoint& p, const Strewn& strewn, std::uint32_t seed) {
   return strength * filtered * clamp01((radius - std::sqrt(dx * dx + dy * dy)) / width + 0.5F);
 }
 
-float scratches(const TexturePoint& p, const Strewn& strewn, std::uint32_t seed) {
+template <class Seed>
+float scratches(const TexturePoint& p, const Strewn& strewn, const Seed& seed) {
   const float pixel = p.footprint_m / strewn.cell_m;
   if (pixel > 0.3F) return 0.0F;
   const Cell cell = cell_at(p, strewn.cell_m, seed);
@@ -57,5 +60,10 @@ float scratches(const TexturePoint& p, const Strewn& strewn, std::uint32_t seed)
   const float filtered = std::min(1.0F, 2.0F * half_width / width);
   return strength * filtered * clamp01(0.5F - along / width) * clamp01(0.5F - across / width);
 }
+
+template float spots(const TexturePoint&, const Strewn&, const std::uint32_t&);
+template float spots(const TexturePoint&, const Strewn&, const Grain&);
+template float scratches(const TexturePoint&, const Strewn&, const std::uint32_t&);
+template float scratches(const TexturePoint&, const Strewn&, const Grain&);
 
 }  // namespace samewhere::twin

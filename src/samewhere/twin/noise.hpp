@@ -80,14 +80,52 @@ constexpr float grid_value(int x, int y, std::uint32_t seed) {
   return static_cast<float>(static_cast<std::int32_t>(h)) * (1.0F / 2147483648.0F);
 }
 
+// Seeds of a pattern that look-alikes share in part. Values are (1 - own_ratio) common + own_ratio
+// own, scaled so that the contrast stays; marks are own with a chance of own_ratio.
+struct Grain {
+  Grain(std::uint32_t common_seed, std::uint32_t own_seed, float ratio)
+      : common(common_seed),
+        own(own_seed),
+        own_ratio(ratio),
+        scale(1.0F / std::sqrt((1.0F - ratio) * (1.0F - ratio) + ratio * ratio)) {}
+
+  std::uint32_t common;
+  std::uint32_t own;
+  float own_ratio;
+  float scale;
+};
+
+// Another pattern of the same kind.
+inline Grain operator+(Grain grain, std::uint32_t step) {
+  grain.common += step;
+  grain.own += step;
+  return grain;
+}
+
+inline float grid_value(int x, int y, const Grain& grain) {
+  const float common = grid_value(x, y, grain.common);
+  if (grain.own_ratio <= 0.0F) return common;
+  return grain.scale * lerp(common, grid_value(x, y, grain.own), grain.own_ratio);
+}
+
+inline std::uint32_t hash_cell(int x, int y, const Grain& grain) {
+  if (grain.own_ratio > 0.0F) {
+    const std::uint32_t own = hash_cell(x, y, grain.own);
+    if (unit_float(scramble(own)) < grain.own_ratio) return own;
+  }
+  return hash_cell(x, y, grain.common);
+}
+
 // Grid values blended by weights of the next column and row.
-inline float blend_grid(int x, int y, std::uint32_t seed, float next_x, float next_y) {
+template <class Seed>
+float blend_grid(int x, int y, const Seed& seed, float next_x, float next_y) {
   return lerp(lerp(grid_value(x, y, seed), grid_value(x + 1, y, seed), next_x),
               lerp(grid_value(x, y + 1, seed), grid_value(x + 1, y + 1, seed), next_x), next_y);
 }
 
 // Soft hills and hollows of a size of about 1.
-inline float value_noise(float x, float y, std::uint32_t seed) {
+template <class Seed>
+float value_noise(float x, float y, const Seed& seed) {
   const int ix = floor_int(x);
   const int iy = floor_int(y);
   return blend_grid(ix, iy, seed, smoothstep(x - static_cast<float>(ix)),
@@ -108,7 +146,8 @@ struct Octaves {
   float gain = 0.5F;  // amplitude of each over the one before
 };
 
-inline float octave_noise(const TexturePoint& p, const Octaves& octaves, std::uint32_t seed) {
+template <class Seed>
+float octave_noise(const TexturePoint& p, const Octaves& octaves, const Seed& seed) {
   float sum = 0.0F;
   float amplitude = 1.0F;
   float frequency_per_m = 1.0F / octaves.wavelength_m;
@@ -125,7 +164,8 @@ inline float octave_noise(const TexturePoint& p, const Octaves& octaves, std::ui
 }
 
 // A mosaic of flat rectangles with random values in [-1, 1], their edges as soft as a pixel.
-inline float mosaic(const TexturePoint& p, float width_m, float height_m, std::uint32_t seed) {
+template <class Seed>
+float mosaic(const TexturePoint& p, float width_m, float height_m, const Seed& seed) {
   const float shorter_m = std::min(width_m, height_m);
   const float share = visible_share(shorter_m, p.footprint_m);
   if (share <= 0.0F) return 0.0F;
@@ -146,8 +186,10 @@ struct Strewn {
 };
 
 // Coverage in [0, 1] by round spots of random size and strength.
-float spots(const TexturePoint& p, const Strewn& strewn, std::uint32_t seed);
+template <class Seed>
+float spots(const TexturePoint& p, const Strewn& strewn, const Seed& seed);
 // Coverage in [0, 1] by thin straight strokes of random direction, length and strength.
-float scratches(const TexturePoint& p, const Strewn& strewn, std::uint32_t seed);
+template <class Seed>
+float scratches(const TexturePoint& p, const Strewn& strewn, const Seed& seed);
 
 }  // namespace samewhere::twin

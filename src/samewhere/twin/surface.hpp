@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace samewhere::twin {
 
@@ -14,19 +15,35 @@ using Colour = Eigen::Array3f;
 Colour colour_of_srgb(float red, float green, float blue);
 
 enum class Finish : std::uint8_t {
-  kWall,     // painted plaster with a darker dado
-  kCarpet,   // tiles
-  kCeiling,  // mineral fibre tiles
-  kWood,     // door leaves, frames of boards
-  kPaint,    // painted metal
-  kSteel,    // brushed metal
-  kPlate,    // room number
-  kCork,     //
-  kPaper,    // posters and notices
-  kSign,     // plain pictogram
-  kLamp,     // emits light
-  kBlinds,   // a window with its blinds down, emits light
-  kGrille,   // slots: vents, radiators
+  kWall,        // painted blocks with a darker dado
+  kCarpet,      // tiles
+  kCeiling,     // mineral fibre tiles
+  kWood,        // door leaves, table tops, frames of boards
+  kPaint,       // painted metal
+  kSteel,       // brushed metal
+  kPlate,       // room number
+  kCork,        //
+  kPaper,       // posters and notices
+  kSign,        // plain pictogram, which one: `number`
+  kLamp,        // emits light
+  kBlinds,      // a window with its blinds down, emits light
+  kGrille,      // slots: vents, radiators
+  kPlaster,     // painted with a roller: walls, ceilings
+  kBrick,       // painted over
+  kConcrete,    // cast between boards; floors too
+  kFloorTiles,  // 30 cm
+  kPlanks,      // a wooden floor
+  kFabric,      // cloth: plain, stripes or checks by `number`
+  kPlastic,     // moulded: shells of chairs, switches, bins
+  kLeaf,        // of a plant, its rib along `up`
+  kSoil,        //
+  kSkin,        //
+  kHair,        // its strands along `up`
+  kCarton,      // corrugated board with tape
+  kLabel,       // bar code and small print
+  kView,        // a window with what is outside, emits light
+  kBooks,       // their backs side by side
+  kBigNumber,   // `number` as high as the rectangle
 };
 
 // What a surface is made of. Every finish reads the part that it needs.
@@ -38,51 +55,38 @@ struct Material {
   std::uint32_t pattern_seed = 0;      // grain, print: the same on look-alikes
   std::uint32_t own_pattern_seed = 0;  // mixed in by own_ratio
   float own_ratio = 0.0F;
-  int number = 0;         // of the room
-  float radiance = 0.0F;  // of emitting finishes
+  int number = 0;               // of the room, the floor, the pictogram, the kind of cloth
+  float radiance = 0.0F;        // of emitting finishes
+  std::uint32_t blot_seed = 0;  // a big stain or scratch in the middle; 0: none
 };
 
-// An axis-aligned rectangle seen from one side. Metres; z is up.
+// A rectangle seen from one side. Metres; the world's z is up.
 struct Rectangle {
-  int axis = 2;  // of its normal: 0 x, 1 y, 2 z
-  float plane_m = 0.0F;
-  float facing = 1.0F;                              // +1 or -1: which way the normal points
-  Eigen::Vector2f low_m = Eigen::Vector2f::Zero();  // in the two other axes, in the order x y z
-  Eigen::Vector2f high_m = Eigen::Vector2f::Zero();
+  Eigen::Vector3f corner_m = Eigen::Vector3f::Zero();  // lower left, as seen
+  Eigen::Vector3f right = Eigen::Vector3f::UnitX();    // unit length
+  Eigen::Vector3f up = Eigen::Vector3f::UnitY();       // unit length, at right angles to `right`
+  Eigen::Vector2f size_m = Eigen::Vector2f::Ones();
+  // Added to what lies right of and above the corner, for patterns that run on from one rectangle
+  // to the next. On walls its y is the height of the corner above the floor.
+  Eigen::Vector2f pattern_m = Eigen::Vector2f::Zero();
+  int object = -1;  // index in Building::objects; -1: belongs to none
   Material material;
 
-  // The two axes of the plane.
-  int first_axis() const { return axis == 0 ? 1 : 0; }
-  int second_axis() const { return axis == 2 ? 1 : 2; }
-  Eigen::Vector2f size_m() const { return high_m - low_m; }
-  Eigen::Vector3f normal() const { return facing * Eigen::Vector3f::Unit(axis); }
-  Eigen::Vector2f on_plane(const Eigen::Vector3f& point) const {
-    return {point[first_axis()], point[second_axis()]};
+  // Towards whoever sees it.
+  Eigen::Vector3f normal() const { return right.cross(up); }
+  // `right_up_m`: right of and above the corner.
+  Eigen::Vector3f at(const Eigen::Vector2f& right_up_m) const {
+    return corner_m + right_up_m.x() * right + right_up_m.y() * up;
   }
-  Eigen::Vector3f at(const Eigen::Vector2f& on_plane) const;
+  Eigen::Vector2f right_up_m(const Eigen::Vector3f& point) const {
+    return {right.dot(point - corner_m), up.dot(point - corner_m)};
+  }
 };
 
-// Coordinates of the texture: for walls from the lower left corner as seen, so that print reads
-// from left to right; for floors and ceilings those of the world, so that patterns run on.
-Eigen::Vector2f texture_coordinates(const Rectangle& rectangle, const Eigen::Vector2f& on_plane);
-
+// Corners of a block in the coordinates of the thing that it is a part of.
 struct Box {
   Eigen::Vector3f low_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f high_m = Eigen::Vector3f::Zero();
 };
-
-// Which way a surface looks: +1 or -1 along an axis.
-struct Face {
-  int axis = 2;
-  float facing = 1.0F;
-};
-
-struct Materials {
-  Material front;
-  Material sides;
-};
-
-// The five faces that are seen of a box that is fixed to something behind it.
-std::vector<Rectangle> faces_of(const Box& box, const Face& front, const Materials& materials);
 
 }  // namespace samewhere::twin

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/twin/surface.hpp>
+
+namespace samewhere::twin {
+
+// How a unit is decorated. Look-alikes have the same common seed and own seeds that differ.
+struct Style {
+  std::uint64_t common_seed = 0;
+  std::uint64_t own_seed = 1;
+  double similarity = 0.8;  // in [0, 1]
+  // At another visit of the same building half of the papers on its walls are new ones.
+  std::uint64_t visit = 0;
+};
+
+// Over the usual: 0 is off.
+struct LightSetting {
+  float lamps = 1.0F;
+  float daylight = 1.0F;
+};
+
+// Decisions about one thing. Each is drawn twice, once from what all look-alikes share and once for
+// this one alone; similarity s says how the two make one. Every decision takes the same number of
+// draws whatever comes out, and things do not share generators: look-alikes stay in step.
+class Draws {
+ public:
+  // `thing`: counts the things of a unit, the same for look-alikes.
+  Draws(const Style& style, std::uint64_t thing);
+
+  // Continuous looks: s common + (1 - s) own, each uniform in [low, high).
+  float blend(float low, float high);
+  // Of colours, each one of a range.
+  Colour blend(std::span<const Colour> range);
+  // Discrete choices: own with a chance of 1 - s, or `min_own` if that is more.
+  int pick(int count, double min_own = 0.0);
+  bool happens(double chance) { return pick_uniform(0.0) < chance; }
+  // To the left or right by up to `most`: a small change of place.
+  float shift(float most) { return static_cast<float>(most * (2.0 * pick_uniform(0.0) - 1.0)); }
+
+  std::uint32_t common_seed() { return static_cast<std::uint32_t>(common_.next()); }
+  std::uint32_t own_seed() { return static_cast<std::uint32_t>(own_.next()); }
+  // True where the last discrete choice was this one's own.
+  bool was_own() const { return was_own_; }
+  float own_ratio() const { return static_cast<float>(1.0 - similarity_); }
+
+ private:
+  double pick_uniform(double min_own);
+
+  double similarity_;
+  core::Random common_;
+  core::Random own_;
+  bool was_own_ = false;
+};
+
+// The colours and patterns that run through a whole unit.
+struct Palette {
+  explicit Palette(const Style& style);
+
+  Colour wall, dado, wood, frame, carpet, fleck, floor, joint, ceiling, skirting, upholstery;
+  std::uint32_t pattern_seed = 0;
+  std::uint32_t own_pattern_seed = 0;
+  std::uint32_t wear_seed = 0;
+};
+
+}  // namespace samewhere::twin
