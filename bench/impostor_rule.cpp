@@ -27,16 +27,12 @@ std::vector<int> every(int step, int num_frames) {
 
 using Pairs = std::set<std::pair<int, int>>;  // either frame first
 
-// The impostors that the truth names, by either frame; empty where it has no such list. A template
-// because the list is looked for, not relied on.
-template <class TruthType>
-Pairs listed_impostors(const TruthType& truth) {
+// The impostors that the truth names, by either frame; empty where it has no such list.
+Pairs listed_impostors(const core::Truth& truth) {
   Pairs pairs;
-  if constexpr (requires { truth.impostors; }) {
-    for (const auto& pair : truth.impostors) {
-      pairs.emplace(pair.query, pair.match);
-      pairs.emplace(pair.match, pair.query);
-    }
+  for (const core::FramePair& pair : truth.impostors) {
+    pairs.emplace(pair.query, pair.match);
+    pairs.emplace(pair.match, pair.query);
   }
   return pairs;
 }
@@ -55,11 +51,14 @@ ImpostorRule rule_of_places(const KnownFrames& frames, int query_step) {
   return {"other places", every(query_step, static_cast<int>(frames.names.size())), offer};
 }
 
-ImpostorRule rule_of_list(const Pairs& pairs, int query_step, int num_frames) {
+ImpostorRule rule_of_list(const Pairs& pairs, int query_step) {
   ImpostorRule rule{.name = "listed impostors", .queries = {}, .offer = nullptr};
-  for (const int query : every(query_step, num_frames)) {
-    const auto first = pairs.lower_bound({query, 0});
-    if (first != pairs.end() && first->first == query) rule.queries.push_back(query);
+  int next_query = 0;
+  // not the multiples of the step: a list may name few frames, and none of those
+  for (const auto& [query, match] : pairs) {
+    if (query < next_query) continue;
+    rule.queries.push_back(query);
+    next_query = query + query_step;
   }
   rule.offer = [pairs](int query, int match) {
     return pairs.contains({query, match}) ? Offer::kImpostor : Offer::kTakenOut;
@@ -110,9 +109,7 @@ std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_st
   std::vector<ImpostorRule> rules;
   if (frames.truth.places) rules.push_back(rule_of_places(frames, query_step));
   const Pairs listed = listed_impostors(frames.truth);
-  if (!listed.empty()) {
-    rules.push_back(rule_of_list(listed, query_step, static_cast<int>(frames.names.size())));
-  }
+  if (!listed.empty()) rules.push_back(rule_of_list(listed, query_step));
   if (rules.empty()) {
     throw core::InputError("the truth says nothing about places; expected a place matrix");
   }

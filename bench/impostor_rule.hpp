@@ -30,7 +30,7 @@ struct KnownFrames {
   core::Truth truth;
 };
 
-// The rules that a source's own truth allows, each `query_step`-th frame a query:
+// The rules that a source's own truth allows; queries are at least `query_step` frames apart:
 // * "other places": every frame but those whose place is the same or near (protocol pr-v2, either
 //   way round) and those within 10 s of the query;
 // * "listed impostors": of the pairs that truth.impostors names, by either frame, nothing else;

@@ -174,11 +174,7 @@ void measure_all(const Options& options) {
   publish(table, options.csv_file);
 }
 
-}  // namespace
-}  // namespace samewhere::bench
-
-int main(int argc, char** argv) {
-  using namespace samewhere::bench;
+int run(int argc, char** argv) {
   Options options;
   options.network = default_network();
   CLI::App app(
@@ -200,4 +196,15 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--csv", options.csv_file, "write the table to this file, too");
   return run_program(app, argc, argv, [&options] { measure_all(options); });
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  try {
+    return samewhere::bench::run(argc, argv);
+  } catch (...) {
+    return samewhere::bench::kBrokenPromise;  // not even the options could be set up
+  }
 }

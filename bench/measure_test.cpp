@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -135,6 +133,17 @@ TEST(ImpostorRule, TheOwnPlaceAndMomentAreTakenOut) {
   EXPECT_EQ(rule.offer(0, 2), Offer::kImpostor);
   EXPECT_EQ(rule.offer(0, 3), Offer::kTakenOut);  // near, said of the other way round
   EXPECT_THROW(rules_of_truth(KnownFrames(), 1), core::InputError);
+}
+
+TEST(ImpostorRule, ListedImpostorsAreOfferedToBothFramesAndNothingElseIs) {
+  KnownFrames frames;
+  frames.truth.impostors = {{.query = 3, .match = 1}, {.query = 9, .match = 4}};
+  const std::vector<ImpostorRule> rules = rules_of_truth(frames, 2);
+  ASSERT_EQ(rules.size(), 1U);
+  EXPECT_THAT(rules[0].queries, testing::ElementsAre(1, 3, 9));  // 4 is too near 3
+  EXPECT_EQ(rules[0].offer(3, 1), Offer::kImpostor);
+  EXPECT_EQ(rules[0].offer(1, 3), Offer::kImpostor);
+  EXPECT_EQ(rules[0].offer(3, 4), Offer::kTakenOut);
 }
 
 TEST(ImpostorRule, OfTheTowerOtherFloorsAreImpostors) {

@@ -12,7 +12,6 @@ namespace samewhere::bench {
 namespace {
 
 constexpr int kBadInput = 2;
-constexpr int kBrokenPromise = 3;
 
 int complain(const CLI::App& app, const std::string& message, int exit_code) {
   std::fputs((app.get_name() + ": " + message + "\n").c_str(), stderr);

@@ -9,6 +9,8 @@
 
 namespace samewhere::bench {
 
+inline constexpr int kBrokenPromise = 3;  // exit code: a bug of ours
+
 // Parses the arguments, then does the work. Bad input is one line on stderr and exit code 2, a bug
 // of ours 3. OpenCV runs on one thread meanwhile, so that the same figures come out everywhere.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<void()>& work);
