@@ -269,7 +269,7 @@ std::vector<Eigen::Vector3f> way_up(const Eigen::Vector2f& corner_m, float floor
   const float left_m = corner_m.x() + half_m;
   const float right_m = right_flight_m(corner_m) + half_m;
   const float head_m = corner_m.y() + u_stair::kFlight_m;
-  const float turn_m = head_m + 0.5F * u_stair::kLanding_m;
+  const float turn_m = head_m + half_m;
   const float half_up_m = floor_m + 0.5F * u_stair::kStorey_m;
   return {{right_m, corner_m.y(), floor_m}, {right_m, head_m, half_up_m},
           {right_m, turn_m, half_up_m},     {left_m, turn_m, half_up_m},

@@ -159,9 +159,10 @@ void Dresser::dress(int space, const Dress& dress) {
 void Dresser::dress_wall(const WallPiece& piece, const Dress& dress) {
   const float length_m = piece.length_m();
   const Use use = dress.sides[static_cast<std::size_t>(piece.side)];
+  if (use == Use::kNothing) return;
   const bool has_bays = use == Use::kDoors || use == Use::kWindows;
   const int num_bays = has_bays ? static_cast<int>(length_m / dress.pitch_m) : 0;
-  std::vector<float> doors_m;
+  std::vector<Eigen::Vector2f> doors_m;
   Gap gap{.wall = piece.wall, .from_m = 0.0F, .max_depth_m = dress.max_depth_m};
   for (int i = 0; i < num_bays; ++i) {
     const float bay_m = length_m / static_cast<float>(num_bays);
@@ -170,7 +171,7 @@ void Dresser::dress_wall(const WallPiece& piece, const Dress& dress) {
     gap.to_m = middle_m - (use == Use::kDoors ? kHalfDoor_m : kHalfWindow_m);
     fill_gap(gap);
     gap.from_m = middle_m + (use == Use::kDoors ? kPlateEnd_m : kHalfWindow_m);
-    if (use == Use::kDoors) doors_m.push_back(middle_m);
+    if (use == Use::kDoors) doors_m.emplace_back(middle_m - kHalfDoor_m, middle_m + kHalfDoor_m);
   }
   // what is left of a wall without bays is filled piece by piece
   constexpr float kFilling_m = 2.2F;
@@ -218,11 +219,11 @@ void Dresser::fill_gap(const Gap& gap) {
   if (filling != Filling::kTwoPosters) furnisher_.skip_thing();
 }
 
-void Dresser::add_skirting(const Wall& wall, const std::vector<float>& doors_m) {
+void Dresser::add_skirting(const Wall& wall, const std::vector<Eigen::Vector2f>& gaps_m) {
   float from_m = 0.0F;
-  for (const float door_m : doors_m) {
-    furnisher_.add_skirting(wall, from_m, door_m - kHalfDoor_m);
-    from_m = door_m + kHalfDoor_m;
+  for (const auto& gap_m : gaps_m) {
+    furnisher_.add_skirting(wall, from_m, gap_m.x());
+    from_m = gap_m.y();
   }
   furnisher_.add_skirting(wall, from_m, length_of(wall));
 }
