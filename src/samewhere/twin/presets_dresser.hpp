@@ -75,6 +75,8 @@ class Dresser {
 
   void add_surfaces();
   void dress_wall(const WallPiece& piece, const Dress& dress);
+  std::vector<Eigen::Vector2f> add_bays(Use use, float pitch_m, Gap& gap);
+  void fill_long_gap(Gap gap);
   void add_bay(const Place& place, Use use);
   void fill_gap(const Gap& gap);
   void add_ceiling_things(const Space& space);

@@ -7,9 +7,9 @@ namespace {
 
 constexpr int kNumFloors = 5;
 const Eigen::Vector2f kStairCorner_m = Eigen::Vector2f::Zero();
-// the lanes towards the stair and away from it, 0.65 m from the walls
-constexpr double kUp_m = u_stair::kWidth_m - 0.65;
-constexpr double kDown_m = 0.65;
+// the lanes towards the stair and away from it, 0.7 m from the walls
+constexpr double kUp_m = u_stair::kWidth_m - 0.70;
+constexpr double kDown_m = 0.70;
 
 constexpr float kHalfLift_m = 0.57F;  // with its frame
 
