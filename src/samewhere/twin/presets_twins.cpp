@@ -101,6 +101,10 @@ void furnish_side(Draft& draft, const Side& side, int first_number) {
   dresser.dress(side.lobby, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kNothing}});
   dresser.dress(side.hall, {.sides = {Use::kWindows, Use::kPlain, Use::kNothing, Use::kPlain}});
   Furnisher& furnisher = dresser.furnisher();
+  // beyond where one turns back
+  const Wall end = dresser.wall_of(side.wing, 1);
+  furnisher.add_plant(spot_before(end, 0.4F, 0.45F));
+  furnisher.add_chair(spot_before(end, 1.75F, 0.5F));
   // two lifts face the hall, the stairs and the toilets are behind doors towards the lobby
   const Wall lifts = dresser.wall_of(side.hall, 2);
   furnisher.add_lift_door({lifts, 1.4F}, 1);
