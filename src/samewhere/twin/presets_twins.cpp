@@ -112,10 +112,10 @@ void furnish_side(Draft& draft, const Side& side, int first_number) {
   furnisher.add_lift_door({lifts, 3.6F}, 1);
   dresser.add_skirting(lifts, {{0.83F, 1.97F}, {3.03F, 4.17F}});
   const Wall core = dresser.wall_of(side.lobby, 3);
-  furnisher.add_door({core, 0.75F}, first_number + 40);
-  furnisher.add_sign({core, 1.5F}, Pictogram::kStairs);
-  furnisher.add_door({core, 2.25F}, first_number + 41);
-  dresser.add_skirting(core, {{0.23F, 1.27F}, {1.73F, 2.77F}});
+  furnisher.add_door({core, 0.62F}, first_number + 40);
+  furnisher.add_sign({core, 1.53F}, Pictogram::kStairs);
+  furnisher.add_door({core, 2.2F}, first_number + 41);
+  dresser.add_skirting(core, {{0.1F, 1.14F}, {1.68F, 2.72F}});
 }
 
 }  // namespace
