@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -80,6 +81,10 @@ struct Side {
 constexpr std::array<Side, 4> kSides = {
     {{1, false, true}, {0, false, false}, {1, true, false}, {0, true, true}}};
 
+Ticks plane_of(const Side& side, const Block& block) {
+  return side.is_high ? block[side.axis].high : block[side.axis].low;
+}
+
 struct Opening {
   Range along;
   Range up;
@@ -88,7 +93,7 @@ struct Opening {
 std::vector<Opening> openings_of(const Side& side, const Block& own,
                                  const std::vector<Block>& others) {
   const std::size_t along = 1 - side.axis;
-  const Ticks plane = side.is_high ? own[side.axis].high : own[side.axis].low;
+  const Ticks plane = plane_of(side, own);
   std::vector<Opening> openings;
   for (const auto& other : others) {
     const Ticks facing = side.is_high ? other[side.axis].low : other[side.axis].high;
@@ -149,6 +154,19 @@ Eigen::Vector2f corner_on(const Side& side, Ticks plane, Ticks along) {
                         : Eigen::Vector2f(metres(along), metres(plane));
 }
 
+WallPiece piece_on(const Side& side, const Block& block, const Opening& piece) {
+  Range along = piece.along;
+  if (side.runs_backwards) std::swap(along.low, along.high);
+  const Ticks plane = plane_of(side, block);
+  return {.side = static_cast<int>(&side - kSides.data()),
+          .wall = {.from_m = corner_on(side, plane, along.low),
+                   .to_m = corner_on(side, plane, along.high),
+                   .floor_m = metres(block[2].low),
+                   .ceiling_m = metres(block[2].high)},
+          .low_m = metres(piece.up.low),
+          .high_m = metres(piece.up.high)};
+}
+
 }  // namespace
 
 int Plan::add_unit(int kind, const Placement& placement) {
@@ -179,22 +197,10 @@ std::vector<WallPiece> Plan::walls_of(int space) const {
     others.push_back(from_world(to_world(block_of(other), placement_of(other)), placement_of(own)));
   }
   std::vector<WallPiece> walls;
-  for (std::size_t i = 0; i < kSides.size(); ++i) {
-    const Side& side = kSides[i];
-    const Ticks plane = side.is_high ? block[side.axis].high : block[side.axis].low;
+  for (const Side& side : kSides) {
     auto pieces = closed_pieces(block[1 - side.axis], block[2], openings_of(side, block, others));
     if (side.runs_backwards) std::reverse(pieces.begin(), pieces.end());
-    for (const auto& [along, up] : pieces) {
-      const Eigen::Vector2f low = corner_on(side, plane, along.low);
-      const Eigen::Vector2f high = corner_on(side, plane, along.high);
-      walls.push_back({.side = static_cast<int>(i),
-                       .wall = {.from_m = side.runs_backwards ? high : low,
-                                .to_m = side.runs_backwards ? low : high,
-                                .floor_m = metres(block[2].low),
-                                .ceiling_m = metres(block[2].high)},
-                       .low_m = metres(up.low),
-                       .high_m = metres(up.high)});
-    }
+    for (const auto& piece : pieces) walls.push_back(piece_on(side, block, piece));
   }
   return walls;
 }
@@ -269,7 +275,7 @@ std::vector<Eigen::Vector3f> way_up(const Eigen::Vector2f& corner_m, float floor
   const float left_m = corner_m.x() + half_m;
   const float right_m = right_flight_m(corner_m) + half_m;
   const float head_m = corner_m.y() + u_stair::kFlight_m;
-  const float turn_m = head_m + 0.5F * u_stair::kLanding_m;
+  const float turn_m = head_m + half_m;
   const float half_up_m = floor_m + 0.5F * u_stair::kStorey_m;
   return {{right_m, corner_m.y(), floor_m}, {right_m, head_m, half_up_m},
           {right_m, turn_m, half_up_m},     {left_m, turn_m, half_up_m},

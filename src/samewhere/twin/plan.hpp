@@ -80,7 +80,7 @@ inline constexpr float kFlightWidth_m = 1.3F;
 inline constexpr float kCore_m = 0.15F;  // the wall between the flights
 inline constexpr float kWidth_m = 2.0F * kFlightWidth_m + kCore_m;
 inline constexpr float kFlight_m = 8 * 0.28F;
-inline constexpr float kLanding_m = 1.3F;  // depth of the half-landing
+inline constexpr float kLanding_m = 1.5F;  // depth of the half-landing
 inline constexpr float kStorey_m = 3.0F;
 }  // namespace u_stair
 

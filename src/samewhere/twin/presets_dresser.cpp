@@ -157,38 +157,52 @@ void Dresser::dress(int space, const Dress& dress) {
 }
 
 void Dresser::dress_wall(const WallPiece& piece, const Dress& dress) {
-  const float length_m = piece.length_m();
   const Use use = dress.sides[static_cast<std::size_t>(piece.side)];
-  const bool has_bays = use == Use::kDoors || use == Use::kWindows;
-  const int num_bays = has_bays ? static_cast<int>(length_m / dress.pitch_m) : 0;
-  std::vector<float> doors_m;
+  if (use == Use::kNothing) return;
   Gap gap{.wall = piece.wall, .from_m = 0.0F, .max_depth_m = dress.max_depth_m};
-  for (int i = 0; i < num_bays; ++i) {
-    const float bay_m = length_m / static_cast<float>(num_bays);
-    const float middle_m = (static_cast<float>(i) + 0.5F) * bay_m;
-    add_bay({piece.wall, middle_m}, use);
-    gap.to_m = middle_m - (use == Use::kDoors ? kHalfDoor_m : kHalfWindow_m);
-    fill_gap(gap);
-    gap.from_m = middle_m + (use == Use::kDoors ? kPlateEnd_m : kHalfWindow_m);
-    if (use == Use::kDoors) doors_m.push_back(middle_m);
-  }
-  // what is left of a wall without bays is filled piece by piece
-  constexpr float kFilling_m = 2.2F;
-  const float rest_m = length_m - gap.from_m;
-  const int num_fillings =
-      use == Use::kBare ? 0 : std::max(1, static_cast<int>(rest_m / kFilling_m));
-  for (int i = 0; i < num_fillings; ++i) {
-    gap.to_m = gap.from_m + rest_m / static_cast<float>(num_fillings);
-    fill_gap(gap);
-    gap.from_m = gap.to_m;
-  }
+  const bool has_bays = use == Use::kDoors || use == Use::kWindows;
+  const auto doors_m =
+      has_bays ? add_bays(use, dress.pitch_m, gap) : std::vector<Eigen::Vector2f>{};
+  gap.to_m = piece.length_m();
+  if (use != Use::kBare) fill_long_gap(gap);
   add_skirting(piece.wall, doors_m);
   constexpr float kShortest_m = 1.5F;
-  if (length_m < kShortest_m) return;
+  if (piece.length_m() < kShortest_m) return;
   constexpr float kBelowCeiling_m = 0.34F;
   const float height_m = piece.wall.ceiling_m - piece.wall.floor_m - kBelowCeiling_m;
   if (use == Use::kDoors && dress.has_ducts) furnisher_.add_cable_duct(piece.wall);
   if (use == Use::kPlain && dress.has_pipes) furnisher_.add_pipes(piece.wall, height_m);
+}
+
+// As many doors or windows as there is room for, and what is between them. Leaves the gap behind
+// the last; answers where the doors are.
+std::vector<Eigen::Vector2f> Dresser::add_bays(Use use, float pitch_m, Gap& gap) {
+  const float length_m = length_of(gap.wall);
+  const bool has_doors = use == Use::kDoors;
+  const int num_bays = static_cast<int>(length_m / pitch_m);
+  std::vector<Eigen::Vector2f> doors_m;
+  for (int i = 0; i < num_bays; ++i) {
+    const float middle_m = (static_cast<float>(i) + 0.5F) * length_m / static_cast<float>(num_bays);
+    add_bay({gap.wall, middle_m}, use);
+    gap.to_m = middle_m - (has_doors ? kHalfDoor_m : kHalfWindow_m);
+    fill_gap(gap);
+    gap.from_m = middle_m + (has_doors ? kPlateEnd_m : kHalfWindow_m);
+    if (has_doors) doors_m.emplace_back(middle_m - kHalfDoor_m, middle_m + kHalfDoor_m);
+  }
+  return doors_m;
+}
+
+// Piece by piece.
+void Dresser::fill_long_gap(Gap gap) {
+  constexpr float kPiece_m = 2.2F;
+  const float to_m = gap.to_m;
+  const float rest_m = to_m - gap.from_m;
+  const int num_pieces = std::max(1, static_cast<int>(rest_m / kPiece_m));
+  for (int i = 0; i < num_pieces; ++i) {
+    gap.to_m = gap.from_m + rest_m / static_cast<float>(num_pieces);
+    fill_gap(gap);
+    gap.from_m = gap.to_m;
+  }
 }
 
 void Dresser::add_bay(const Place& place, Use use) {
@@ -218,11 +232,11 @@ void Dresser::fill_gap(const Gap& gap) {
   if (filling != Filling::kTwoPosters) furnisher_.skip_thing();
 }
 
-void Dresser::add_skirting(const Wall& wall, const std::vector<float>& doors_m) {
+void Dresser::add_skirting(const Wall& wall, const std::vector<Eigen::Vector2f>& gaps_m) {
   float from_m = 0.0F;
-  for (const float door_m : doors_m) {
-    furnisher_.add_skirting(wall, from_m, door_m - kHalfDoor_m);
-    from_m = door_m + kHalfDoor_m;
+  for (const auto& gap_m : gaps_m) {
+    furnisher_.add_skirting(wall, from_m, gap_m.x());
+    from_m = gap_m.y();
   }
   furnisher_.add_skirting(wall, from_m, length_of(wall));
 }

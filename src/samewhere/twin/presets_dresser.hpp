@@ -28,6 +28,7 @@ Draft draft_of(const Spec& spec, const Plan& plan, const Visit& visit = {});
 
 // What stands along one side of a space.
 enum class Use : std::uint8_t {
+  kNothing,  // whoever uses it adds the skirting, too
   kBare,     // skirting only
   kPlain,    // boards, posters and the like
   kDoors,    // and doors with numbers
@@ -60,6 +61,8 @@ class Dresser {
   void furnish_office(int space, int window_side);
   // Sofa, table, chair and plant along one side, windows left and right of it.
   void furnish_lounge(int space, int sofa_side);
+  // All along a wall but for the gaps: from, to.
+  void add_skirting(const Wall& wall, const std::vector<Eigen::Vector2f>& gaps_m);
   // Handrails and lamps of a stair built by add_u_stair() at this corner.
   void dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m);
 
@@ -72,9 +75,10 @@ class Dresser {
 
   void add_surfaces();
   void dress_wall(const WallPiece& piece, const Dress& dress);
+  std::vector<Eigen::Vector2f> add_bays(Use use, float pitch_m, Gap& gap);
+  void fill_long_gap(Gap gap);
   void add_bay(const Place& place, Use use);
   void fill_gap(const Gap& gap);
-  void add_skirting(const Wall& wall, const std::vector<float>& doors_m);
   void add_ceiling_things(const Space& space);
 
   const Plan& plan_;

@@ -7,9 +7,11 @@ namespace {
 
 constexpr int kNumFloors = 5;
 const Eigen::Vector2f kStairCorner_m = Eigen::Vector2f::Zero();
-// the lanes towards the stair and away from it, 0.65 m from the walls
-constexpr double kUp_m = u_stair::kWidth_m - 0.65;
-constexpr double kDown_m = 0.65;
+// the lanes towards the stair and away from it, 0.7 m from the walls
+constexpr double kUp_m = u_stair::kWidth_m - 0.70;
+constexpr double kDown_m = 0.70;
+
+constexpr float kHalfLift_m = 0.57F;  // with its frame
 
 struct Storey {
   int unit, landing, corridor;
@@ -50,10 +52,12 @@ void furnish_storey(Draft& draft, const Storey& storey, int floor) {
   const auto doors = Use::kDoors;
   dresser.dress(storey.corridor,
                 {.sides = {Use::kWindows, doors, Use::kBare, doors}, .max_depth_m = 0.05F});
-  dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kBare, Use::kBare, Use::kBare}});
+  dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kNothing, Use::kBare, Use::kBare}});
   Furnisher& furnisher = dresser.furnisher();
   furnisher.add_floor_number({dresser.wall_of(storey.landing, 3), 0.6F}, floor);
-  furnisher.add_lift_door({dresser.wall_of(storey.landing, 1), 0.7F}, floor);
+  const Wall lift = dresser.wall_of(storey.landing, 1);
+  furnisher.add_lift_door({lift, 0.7F}, floor);
+  dresser.add_skirting(lift, {{0.7F - kHalfLift_m, 0.7F + kHalfLift_m}});
   // what stands out stands where nobody walks
   const Wall end = dresser.wall_of(storey.corridor, 0);
   furnisher.add_plant(spot_before(end, 0.45F, 0.45F));
@@ -66,10 +70,10 @@ Eigen::Vector3d on_floor(double x_m, double y_m, int floor) {
   return {x_m, y_m, static_cast<double>(u_stair::kStorey_m) * floor};
 }
 
-// Out along the corridor, around and back to the stair.
-void walk_out_and_back(Route& route, int floor, double stretch_m) {
+// Out along the corridor, around and back.
+void walk_out_and_back(Route& route, int floor, double stretch_m, double back_m) {
   walk(route, {on_floor(kDown_m, -stretch_m, floor), on_floor(kUp_m, -stretch_m, floor),
-               on_floor(kUp_m, 0.0, floor)});
+               on_floor(kUp_m, -back_m, floor)});
 }
 
 }  // namespace
@@ -94,18 +98,18 @@ World hotel(const Spec& spec) {
   route.speed_m_s = 1.85;  // in a hurry: half of the way is stairs and turns, which slow down
   route.start_m = on_floor(kDown_m, -1.2, 0);
   route.start_heading_rad = -1.57079632679490;
-  constexpr double kStretch_m = 2.0;
-  constexpr double kTopStretch_m = 4.2;  // so that the second look comes 10 s after the first
+  constexpr double kStretch_m = 1.7;
+  constexpr double kTopStretch_m = 5.2;  // so that the second look comes late enough to count
   constexpr int kTop = kNumFloors - 1;
   for (int floor = 0; floor < kTop; ++floor) {
-    walk_out_and_back(route, floor, kStretch_m);
+    walk_out_and_back(route, floor, kStretch_m, 0.0);
     for (const auto& point : way_up(kStairCorner_m, 0.0F)) {
       walk(route, {point.cast<double>() + on_floor(0.0, 0.0, floor)});
     }
   }
-  walk_out_and_back(route, kTop, kTopStretch_m);
-  walk(route, {on_floor(kUp_m, -0.7, kTop), on_floor(kDown_m, -0.7, kTop),
-               on_floor(kDown_m, -kTopStretch_m, kTop)});
+  constexpr double kBack_m = 0.7;
+  walk_out_and_back(route, kTop, kTopStretch_m, kBack_m);
+  walk(route, {on_floor(kDown_m, -kBack_m, kTop), on_floor(kDown_m, -kTopStretch_m, kTop)});
   return world;
 }
 

@@ -99,7 +99,7 @@ World no_return(const Spec& spec) {
   for (const Part& bend : way.bends) {
     Dresser(draft, bend.unit).dress(bend.space, {.has_pipes = true});
   }
-  for (const Part& end : way.ends) Dresser(draft, end.unit).dress(end.space, {});
+  for (const Part& end : way.ends) Dresser(draft, end.unit).dress(end.space, {.max_depth_m = 0.1F});
 
   World world{.visits = {std::move(draft.building)}};
   world.route.start_m = way.points_m.front();

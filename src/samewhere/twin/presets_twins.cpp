@@ -98,18 +98,24 @@ void furnish_side(Draft& draft, const Side& side, int first_number) {
   Dresser dresser(draft, side.unit);
   dresser.number_from(first_number);
   dresser.dress(side.wing, {.sides = {Use::kDoors, Use::kWindows, Use::kDoors, Use::kPlain}});
-  dresser.dress(side.lobby, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kBare}});
-  dresser.dress(side.hall, {.sides = {Use::kWindows, Use::kPlain, Use::kBare, Use::kPlain}});
+  dresser.dress(side.lobby, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kNothing}});
+  dresser.dress(side.hall, {.sides = {Use::kWindows, Use::kPlain, Use::kNothing, Use::kPlain}});
   Furnisher& furnisher = dresser.furnisher();
+  // beyond where one turns back
+  const Wall end = dresser.wall_of(side.wing, 1);
+  furnisher.add_plant(spot_before(end, 0.4F, 0.45F));
+  furnisher.add_chair(spot_before(end, 1.75F, 0.5F));
   // two lifts face the hall, the stairs and the toilets are behind doors towards the lobby
   const Wall lifts = dresser.wall_of(side.hall, 2);
   furnisher.add_lift_door({lifts, 1.4F}, 1);
   furnisher.add_floor_number({lifts, 2.5F}, 1);
   furnisher.add_lift_door({lifts, 3.6F}, 1);
+  dresser.add_skirting(lifts, {{0.83F, 1.97F}, {3.03F, 4.17F}});
   const Wall core = dresser.wall_of(side.lobby, 3);
-  furnisher.add_door({core, 0.75F}, first_number + 40);
-  furnisher.add_sign({core, 1.5F}, Pictogram::kStairs);
-  furnisher.add_door({core, 2.25F}, first_number + 41);
+  furnisher.add_door({core, 0.62F}, first_number + 40);
+  furnisher.add_sign({core, 1.53F}, Pictogram::kStairs);
+  furnisher.add_door({core, 2.2F}, first_number + 41);
+  dresser.add_skirting(core, {{0.1F, 1.14F}, {1.68F, 2.72F}});
 }
 
 }  // namespace
@@ -125,7 +131,7 @@ World mirror(const Spec& spec) {
   furnish_side(draft, east, 201);
 
   World world{.visits = {std::move(draft.building)}};
-  constexpr double kEnd_m = 9.8;
+  constexpr double kEnd_m = 9.6;
   constexpr double kLobby_m = 3.6;
   constexpr double kHall_m = 2.6;
   Route& route = world.route;

@@ -7,11 +7,12 @@ namespace {
 
 constexpr int kNumAisles = 4;
 constexpr float kHeight_m = 6.0F;
-constexpr float kPitch_m = 4.6F;  // from aisle to aisle: two racks and the way between them
+constexpr float kPitch_m = 4.8F;  // from aisle to aisle: two racks and the way between them
 constexpr float kLength_m = 6.3F;
 constexpr float kCross_m = 3.4F;   // width of the cross aisles
 constexpr float kMargin_m = 0.8F;  // beside the outer racks
 constexpr float kRackDepth_m = 1.1F;
+constexpr float kBehind_m = 0.12F;  // between the backs of two racks, half of it
 constexpr float kWidth_m = kNumAisles * kPitch_m;
 
 Space hall(int unit, const std::string& name, const Eigen::Vector2f& low_m,
@@ -41,8 +42,9 @@ void furnish_aisle(Draft& draft, int unit) {
   Furnisher& furnisher = dresser.furnisher();
   const RackSize size{.length_m = 6.0F, .num_levels = 4};
   const float middle_m = 0.5F * kLength_m;
-  furnisher.add_rack({{0.5F * kRackDepth_m, middle_m, 0.0F}, 0.0F}, size);
-  furnisher.add_rack({{kPitch_m - 0.5F * kRackDepth_m, middle_m, 0.0F}, 3.14159265F}, size);
+  furnisher.add_rack({{kBehind_m + 0.5F * kRackDepth_m, middle_m, 0.0F}, 0.0F}, size);
+  furnisher.add_rack({{kPitch_m - kBehind_m - 0.5F * kRackDepth_m, middle_m, 0.0F}, 3.14159265F},
+                     size);
   for (const float along : {0.15F, 0.5F, 0.85F}) {
     furnisher.add_high_bay_lamp({0.5F * kPitch_m, along * kLength_m}, kHeight_m);
   }
@@ -106,7 +108,7 @@ World warehouse(const Spec& spec) {
 
   World world{.visits = {std::move(draft.building)}};
   Route& route = world.route;
-  route = {.carrier = Carrier::kRobot, .speed_m_s = 1.7, .camera_height_m = 0.75};
+  route = {.carrier = Carrier::kRobot, .speed_m_s = 1.75, .camera_height_m = 0.75};
   constexpr double kSouth_m = -1.25;
   constexpr double kNorth_m = kLength_m + 1.25;
   const auto aisle_x_m = [](int i) { return static_cast<double>(kPitch_m) * (i + 0.5); };
