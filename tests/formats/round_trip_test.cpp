@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "program.hpp"
 #include <samewhere/input/open.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/twin/dataset.hpp>
@@ -76,12 +77,19 @@ void expect_same_rig(const core::Rig& found, const core::Rig& expected) {
             expected.imu->accelerometer_noise_m_s2_sqrt_hz);
 }
 
+// By the format check, which knows nothing of our readers.
+void expect_good_format(const std::filesystem::path& folder) {
+  const std::string check = "'" SAMEWHERE_REPOSITORY "/scripts/check-dataset' " + quoted(folder);
+  EXPECT_EQ(std::system(check.c_str()), 0) << folder;
+}
+
 TEST(RoundTrip, ATumFolderComesBackAsItWas) {
   const input::TestFolder folder;
   twin::TestSource written(kNumFrames, 1, 3);
   ASSERT_EQ(twin::write_tum_folder(written, folder.root() / "walk"), twin::Written::kComplete);
   const auto read = input::open_source(folder.root() / "walk", input::Config{});
   EXPECT_EQ(read->info().format, "TUM RGB-D");
+  expect_good_format(folder.root() / "walk");
   expect_same_truth(read->truth(), written.truth(), kTumStep_s);
   twin::TestSource expected(kNumFrames, 1, 3);
   while (const auto frame = expected.next()) {
@@ -103,6 +111,7 @@ TEST(RoundTrip, AEurocFolderComesBackAsItWas) {
     ASSERT_EQ(twin::write_euroc_folder(written, folder.root() / "walk"), twin::Written::kComplete);
     const auto read = input::open_source(folder.root() / "walk", input::Config{});
     EXPECT_EQ(read->info().format, "EuRoC");
+    expect_good_format(folder.root() / "walk");
     expect_same_truth(read->truth(), written.truth(), kEurocStep_s);
     twin::TestSource expected(kNumFrames, num_cameras, 4);
     while (const auto frame = expected.next()) {
