@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
@@ -179,9 +178,7 @@ TEST_F(PictureCacheTest, AFolderThatCannotBeMadeSwitchesItOff) {
 TEST_F(PictureCacheTest, AFullDiskIsToldAndLeavesNothingBehind) {
   const PictureCache cache = open("hotel");
   ASSERT_EQ(cache.store(0, pictures(1)), std::nullopt);
-  std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit full{1000, RLIM_INFINITY};
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  const FullDisk full;
   EXPECT_THAT(cache.store(1, pictures(2)), Optional(HasSubstr("000001.pictures")));
   EXPECT_EQ(files().size(), 1U);
   expect_same(cache.load(0), pictures(1));

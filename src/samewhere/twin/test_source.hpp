@@ -1,11 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <sys/resource.h>
 
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/source.hpp>
@@ -125,6 +129,23 @@ class TestSource : public core::Source {
   std::shared_ptr<const core::Rig> rig_;
   core::Truth truth_;
   int next_ = 0;
+};
+
+// While it lives, no file of this process grows beyond a thousand bytes. For tests only.
+class FullDisk {
+ public:
+  FullDisk() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit full{1000, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
 };
 
 }  // namespace samewhere::twin

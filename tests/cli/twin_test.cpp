@@ -1,0 +1,110 @@
+// `samewhere twin` writes folders that others can read.
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "program.hpp"
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::test {
+namespace {
+
+class Twin : public testing::Test {
+ protected:
+  Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
+  std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
+
+  Outcome write(const std::string& format, const std::string& more = "") const {
+    return run("twin 'twin:office-loop?seed=2' --set twin.num_frames=5 --out " +
+               quoted(path(format)) + " --format " + format + " " + more);
+  }
+
+  // What the independent format check says.
+  std::string check(const std::string& name) const {
+    const std::string command = "'" SAMEWHERE_REPOSITORY "/scripts/check-dataset' " +
+                                quoted(path(name)) + " >" + quoted(path("check.txt")) + " 2>&1";
+    const int status = std::system(command.c_str());
+    return (status == 0 ? "good: " : "bad: ") + core::read_file(path("check.txt"));
+  }
+
+  input::TestFolder folder_;
+};
+
+TEST_F(Twin, ListNamesThePresetsWithALineEach) {
+  const Outcome outcome = run("twin --list");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.rfind("twin:office-loop ", 0), 0U) << outcome.out;
+  EXPECT_GE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1);
+}
+
+TEST_F(Twin, ATumFolderPassesTheFormatCheckAndRuns) {
+  const Outcome outcome = write("tum");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("5 frames"), std::string::npos) << outcome.out;
+  EXPECT_EQ(check("tum").rfind("good: ", 0), 0U) << check("tum");
+  const Outcome slam = run("run " + quoted(path("tum")) + " --out " + quoted(path("out")));
+  EXPECT_EQ(slam.exit_code, 0) << slam.err;
+  EXPECT_NE(slam.out.find("ATE RMSE"), std::string::npos) << slam.out;
+}
+
+TEST_F(Twin, AEurocFolderPassesTheFormatCheckAndIsRecognised) {
+  const Outcome outcome = write("euroc");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(check("euroc").rfind("good: ", 0), 0U) << check("euroc");
+  const Outcome loops = run("loops " + quoted(path("euroc")) +
+                            " --set retrieve.window_frames=2 --out " + quoted(path("out")));
+  EXPECT_EQ(loops.exit_code, 0) << loops.err;
+  EXPECT_TRUE(std::filesystem::exists(path("out") / "matches.txt"));
+  const Outcome slam = run("run " + quoted(path("euroc")) + " --out " + quoted(path("slam")));
+  EXPECT_EQ(slam.exit_code, 2);
+  EXPECT_NE(slam.err.find("no depth images"), std::string::npos) << slam.err;
+}
+
+TEST_F(Twin, TheSameWalkIsTheSameBytes) {
+  ASSERT_EQ(write("tum").exit_code, 0);
+  std::filesystem::rename(path("tum"), path("first"));
+  ASSERT_EQ(write("tum").exit_code, 0);
+  int num_files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path("first"))) {
+    if (!entry.is_regular_file()) continue;
+    const auto name = std::filesystem::relative(entry.path(), path("first"));
+    EXPECT_EQ(core::read_file(entry.path()), core::read_file(path("tum") / name)) << name;
+    ++num_files;
+  }
+  EXPECT_GE(num_files, 2 * 5 + 4);
+}
+
+TEST_F(Twin, WrongCallsAreNamed) {
+  const auto expect_named = [](const Outcome& outcome, const std::string& words) {
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << words << " in: " << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  };
+  expect_named(run("twin"), "expected twin:PRESET or --list");
+  expect_named(run("twin twin:office-loop"), "expected --out DIR");
+  expect_named(run("twin twin:office-loop --out x --format kitti"), "expected one of: tum, euroc");
+  expect_named(run("twin twin:castle --out x"), "castle");
+  std::filesystem::create_directories(path("tum"));
+  expect_named(write("tum"), "is there already");
+  expect_named(run("twin twin:office-loop --set twin.num_frames=2 --out /proc/walk"), "/proc/walk");
+}
+
+TEST_F(Twin, CtrlCLeavesNothing) {
+  // job control on: without it a shell's background process ignores SIGINT
+  core::write_file(path("interrupt.sh"), "set -m\n'" + std::string(SAMEWHERE_PROGRAM) +
+                                             "' twin twin:office-loop --out " +
+                                             quoted(path("cut")) +
+                                             " >/dev/null 2>&1 &\n"
+                                             "until ls " +
+                                             quoted(path("cut.partial") / "rgb") +
+                                             " >/dev/null 2>&1; do sleep 0.1; done\n"
+                                             "kill -INT $!\nwait $!\n");
+  const int status = std::system(("timeout 120 bash " + quoted(path("interrupt.sh"))).c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_FALSE(std::filesystem::exists(path("cut")));
+  EXPECT_FALSE(std::filesystem::exists(path("cut.partial")));
+}
+
+}  // namespace
+}  // namespace samewhere::test
