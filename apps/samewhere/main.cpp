@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_loops_command(app, exit_code);
   add_eval_command(app);
+  add_twin_command(app, exit_code);
   add_config_command(app);
   try {
     app.parse(argc, argv);

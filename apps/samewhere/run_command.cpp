@@ -115,7 +115,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   auto command = std::make_shared<RunCommand>();
   CLI::App* sub = app.add_subcommand(name, what);
   sub->add_option("SOURCE", command->source,
-                  "a folder (TUM RGB-D, 7-Scenes, HoloLens, images), a list of images, or "
+                  "a folder (TUM RGB-D, EuRoC, 7-Scenes, HoloLens, images), a list of images, or "
                   "twin:PRESET?seed=3")
       ->required();
   sub->add_option("--out", command->out,

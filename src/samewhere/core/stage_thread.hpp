@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -9,6 +10,12 @@
 #include <samewhere/core/channel.hpp>
 
 namespace samewhere::core {
+
+// How many threads the machine runs at a time, at least 1. For sharing out work whose result does
+// not depend on it.
+inline int num_hardware_threads() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 // A thread that runs one function to its end. An exception in it comes out of join(). The
 // destructor joins and swallows: whoever wants the exception calls join() first. Whoever owns

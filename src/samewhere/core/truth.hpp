@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -30,10 +31,21 @@ struct PlaceTruthMatrix {
   }
 };
 
-// What is known to be true about a source; either part may be missing.
+// Two frames of a source, by their 0-based positions; query > match.
+struct FramePair {
+  int query = 0;
+  int match = 0;
+
+  friend auto operator<=>(const FramePair&, const FramePair&) = default;
+};
+
+// What is known to be true about a source; each part may be missing.
 struct Truth {
   Trajectory trajectory;  // empty: not known
   std::optional<PlaceTruthMatrix> places;
+  // Frames of different places that look alike by construction, as only a made-up building can
+  // tell; ascending, no pair twice. Empty: none, or not known.
+  std::vector<FramePair> impostors;
 };
 
 }  // namespace samewhere::core

@@ -65,6 +65,9 @@ LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth&
     result.num_right += found == LoopTruth::kRight ? 1 : 0;
     result.num_wrong += found == LoopTruth::kWrong ? 1 : 0;
     result.num_unknown += found == LoopTruth::kUnknown ? 1 : 0;
+    const bool is_impostor =
+        found == LoopTruth::kWrong && are_impostors(truth.impostors, loop.query, loop.match);
+    result.num_impostors += is_impostor ? 1 : 0;
   }
   return result;
 }

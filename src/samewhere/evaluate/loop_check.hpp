@@ -32,6 +32,7 @@ struct LoopCheck {
   int num_right = 0;
   int num_wrong = 0;
   int num_unknown = 0;
+  int num_impostors = 0;  // wrong ones that join what Truth::impostors names
 };
 
 // Judges accepted loops by docs/evaluation.md: a loop is wrong if its match_from_query differs from

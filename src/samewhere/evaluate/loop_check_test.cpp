@@ -112,6 +112,19 @@ TEST(LoopCheck, ALoopWithoutAPoseFallsBackToTheMatrix) {
   EXPECT_EQ(check_loops({loop_with(std::nullopt)}, truth).num_wrong, 1);
 }
 
+TEST(LoopCheck, OfTheWrongOnesImpostorsAreCounted) {
+  core::Truth truth;
+  truth.places = core::PlaceTruthMatrix{4, std::vector<core::PlaceTruth>(16)};
+  truth.impostors = {{2, 0}, {3, 1}};
+  const LoopCheck check = check_loops(
+      {{3, 0, 0.3, 0.0, {}}, {3, 1, 0.3, 0.1, {}}, {2, 0, 0.2, 0.0, {}}, {2, 1, 0.2, 0.1, {}}},
+      truth);
+  EXPECT_EQ(check.num_wrong, 4);
+  EXPECT_EQ(check.num_impostors, 2);
+  truth.impostors.clear();
+  EXPECT_EQ(check_loops({{3, 1, 0.3, 0.1, {}}}, truth).num_impostors, 0);
+}
+
 TEST(LoopCheck, OutsideTheTruthNothingIsKnown) {
   AcceptedLoop late = loop_with(true_return());
   late.query_stamp_s = 7.0;

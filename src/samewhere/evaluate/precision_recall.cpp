@@ -130,6 +130,19 @@ PrecisionRecall precision_recall(const core::PlaceTruthMatrix& truth,
   return result;
 }
 
+bool are_impostors(const std::vector<core::FramePair>& impostors, int query, int match) {
+  return std::binary_search(impostors.begin(), impostors.end(),
+                            core::FramePair{std::max(query, match), std::min(query, match)});
+}
+
+int count_accepted_impostors(const std::vector<core::FramePair>& impostors,
+                             const std::vector<Match>& accepted, int window_frames) {
+  return static_cast<int>(std::count_if(accepted.begin(), accepted.end(), [&](const Match& row) {
+    return !is_recent(row.query, row.match, window_frames) &&
+           are_impostors(impostors, row.query, row.match);
+  }));
+}
+
 AcceptedCounts count_accepted(const core::PlaceTruthMatrix& truth,
                               const std::vector<Match>& accepted, int window_frames) {
   AcceptedCounts counts;

@@ -49,6 +49,13 @@ struct AcceptedCounts {
   int num_recent = 0;  // inside the window: no loop at all
 };
 
+// Whether Truth::impostors names the two frames; the order of the two does not matter.
+bool are_impostors(const std::vector<core::FramePair>& impostors, int query, int match);
+
+// Accepted matches outside the window that Truth::impostors names. They are wrong ones.
+int count_accepted_impostors(const std::vector<core::FramePair>& impostors,
+                             const std::vector<Match>& accepted, int window_frames);
+
 // Counts at one threshold: `accepted` may hold several rows of one query. Throws InputError on a
 // row outside the matrix.
 AcceptedCounts count_accepted(const core::PlaceTruthMatrix& truth,

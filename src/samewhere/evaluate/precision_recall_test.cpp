@@ -121,5 +121,15 @@ TEST(CountAccepted, SortsEveryRowIntoOneOfFour) {
   EXPECT_THROW(count_accepted(kSecondLap, {{0, 6, 1}}, 2), core::InputError);
 }
 
+TEST(CountAccepted, ImpostorsAreCountedOutsideOfTheWindow) {
+  const std::vector<core::FramePair> impostors = {{3, 0}, {4, 0}, {5, 3}};
+  EXPECT_EQ(count_accepted_impostors(impostors, {{3, 0, 1}, {4, 1, 1}, {4, 0, 1}, {5, 3, 1}}, 2),
+            2);
+  EXPECT_EQ(count_accepted_impostors({}, {{3, 0, 1}}, 2), 0);
+  EXPECT_TRUE(are_impostors(impostors, 4, 0));
+  EXPECT_TRUE(are_impostors(impostors, 0, 4));
+  EXPECT_FALSE(are_impostors(impostors, 4, 3));
+}
+
 }  // namespace
 }  // namespace samewhere::evaluate

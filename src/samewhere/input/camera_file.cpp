@@ -42,4 +42,9 @@ core::PinholeRadtan read_camera_file(const std::filesystem::path& path) {
   return camera;
 }
 
+bool is_centre_inside(const core::PinholeRadtan& camera) {
+  return camera.cx_px >= 0.0 && camera.cx_px <= camera.width_px - 1.0 && camera.cy_px >= 0.0 &&
+         camera.cy_px <= camera.height_px - 1.0;
+}
+
 }  // namespace samewhere::input

@@ -11,4 +11,8 @@ namespace samewhere::input {
 // InputError naming file and line if it is anything else than that.
 core::PinholeRadtan read_camera_file(const std::filesystem::path& path);
 
+// Whether the optical centre lies in the image of width x height: else the calibration belongs to
+// other images.
+bool is_centre_inside(const core::PinholeRadtan& camera);
+
 }  // namespace samewhere::input

@@ -25,7 +25,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .min = 0.0,
          .max = 1e6});
   visit("max_stamp_difference_s", config.max_stamp_difference_s,
-        {.help = "TUM RGB-D: largest distance in time of a depth image to its colour image, s",
+        {.help = "largest distance in time of pictures that make one frame, s",
          .min = 0.0,
          .max = 1.0});
 }

@@ -12,27 +12,44 @@ namespace {
 
 using core::InputError;
 
-core::Rig rig_of(const Recording& recording, int width_px, int height_px) {
-  if (recording.camera_file.empty()) return {};
+core::PinholeRadtan camera_of_file(const Recording& recording, const cv::Size& size_px) {
   core::PinholeRadtan camera = read_camera_file(recording.camera_file);
-  camera.width_px = width_px;
-  camera.height_px = height_px;
-  const bool is_inside = camera.cx_px >= 0.0 && camera.cx_px <= width_px - 1.0 &&
-                         camera.cy_px >= 0.0 && camera.cy_px <= height_px - 1.0;
-  if (!is_inside) {
-    throw InputError(fmt::format(
-        "{}: wrong calibration: the centre ({}, {}) lies outside the image, {} is {} x {} pixels",
-        recording.camera_file.string(), camera.cx_px, camera.cy_px,
-        recording.frames.front().image.string(), width_px, height_px));
-  }
-  return {.cameras = {camera}, .body_from_camera = {core::Rigid3{}}, .imu = std::nullopt};
+  camera.width_px = size_px.width;
+  camera.height_px = size_px.height;
+  if (is_centre_inside(camera)) return camera;
+  throw InputError(fmt::format(
+      "{}: wrong calibration: the centre ({}, {}) lies outside the image, {} is {} x {} pixels",
+      recording.camera_file.string(), camera.cx_px, camera.cy_px,
+      recording.frames.front().images.front().string(), size_px.width, size_px.height));
 }
 
-void check_size(const std::filesystem::path& file, const cv::Mat& image, int width_px,
-                int height_px) {
-  if (image.cols == width_px && image.rows == height_px) return;
+cv::Size size_of(const core::Camera& camera) {
+  return std::visit([](const auto& model) { return cv::Size(model.width_px, model.height_px); },
+                    camera);
+}
+
+core::Rig rig_of(const Recording& recording, const std::vector<cv::Size>& sizes_px) {
+  core::Rig rig = recording.rig;
+  if (!recording.camera_file.empty()) {
+    if (rig.cameras.empty()) rig.body_from_camera = {core::Rigid3{}};
+    rig.cameras.resize(std::max<std::size_t>(rig.cameras.size(), 1));
+    rig.cameras.front() = camera_of_file(recording, sizes_px.front());
+  }
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    const cv::Size calibrated_px = size_of(rig.cameras[i]);
+    if (calibrated_px == sizes_px[i]) continue;
+    throw InputError(fmt::format("{}: is {} x {} pixels, its camera is calibrated for {} x {}",
+                                 recording.frames.front().images[i].string(), sizes_px[i].width,
+                                 sizes_px[i].height, calibrated_px.width, calibrated_px.height));
+  }
+  return rig;
+}
+
+void check_size(const std::filesystem::path& file, const cv::Mat& image, const cv::Size& size_px) {
+  if (image.size() == size_px) return;
   throw InputError(fmt::format("{}: is {} x {} pixels, expected {} x {} as the first image",
-                               file.string(), image.cols, image.rows, width_px, height_px));
+                               file.string(), image.cols, image.rows, size_px.width,
+                               size_px.height));
 }
 
 double frame_rate_hz(const std::vector<FrameFiles>& frames) {
@@ -50,10 +67,12 @@ double frame_rate_hz(const std::vector<FrameFiles>& frames) {
 
 FileSource::FileSource(std::string name, Recording recording) : recording_(std::move(recording)) {
   core::require(!recording_.frames.empty(), "a recording holds at least one frame");
-  const cv::Mat first = read_image(recording_.frames.front().image);
-  width_px_ = first.cols;
-  height_px_ = first.rows;
-  rig_ = std::make_shared<const core::Rig>(rig_of(recording_, width_px_, height_px_));
+  for (const auto& image : recording_.frames.front().images) {
+    sizes_px_.push_back(read_image(image).size());
+  }
+  core::require(recording_.rig.cameras.empty() || recording_.rig.cameras.size() == sizes_px_.size(),
+                "a calibrated recording has one image per camera");
+  rig_ = std::make_shared<const core::Rig>(rig_of(recording_, sizes_px_));
   const bool has_depth = std::any_of(recording_.frames.begin(), recording_.frames.end(),
                                      [](const FrameFiles& files) { return !files.depth.empty(); });
   info_ = {.name = std::move(name),
@@ -74,11 +93,17 @@ std::optional<core::Frame> FileSource::next() {
   frame.stamp_s = files.stamp_s;
   frame.name = files.name;
   frame.rig = rig_;
-  frame.images.push_back(read_image(files.image));
-  check_size(files.image, frame.images.front(), width_px_, height_px_);
+  for (std::size_t i = 0; i < files.images.size(); ++i) {
+    frame.images.push_back(read_image(files.images[i]));
+    check_size(files.images[i], frame.images.back(), sizes_px_[i]);
+  }
   if (!files.depth.empty()) {
     frame.depth_m = read_depth(files.depth, recording_.depth_units_per_m);
-    check_size(files.depth, *frame.depth_m, width_px_, height_px_);
+    check_size(files.depth, *frame.depth_m, sizes_px_.front());
+  }
+  const auto& imu = recording_.imu;
+  for (; next_imu_ < imu.size() && imu[next_imu_].stamp_s <= files.stamp_s; ++next_imu_) {
+    frame.imu_since_last.push_back(imu[next_imu_]);
   }
   ++next_index_;
   return frame;

@@ -24,6 +24,11 @@ std::optional<Recording> find_seven_scenes(const std::filesystem::path& folder,
 // This is how the HoloLens samples of DeepVideoMVS (Duzceker et al. 2021) are laid out.
 std::optional<Recording> find_hololens(const std::filesystem::path& folder, const Config& config);
 
+// mav0/cam0/data.csv and sensor.yaml, where they are also those of cam1, imu0 and
+// state_groundtruth_estimate0: the ASL format of Burri et al. 2016. `folder` may be mav0 itself.
+// One picture a frame and camera: those of cam1 belong to the nearest in time of cam0.
+std::optional<Recording> find_euroc(const std::filesystem::path& folder, const Config& config);
+
 // *.jpg, *.jpeg, *.png in natural order, camera.txt. Stamps count by the last number of the names
 // if that rises from each to the next, else by position.
 std::optional<Recording> find_images(const std::filesystem::path& folder, const Config& config);

@@ -42,7 +42,7 @@ std::optional<Recording> find_hololens(const path& folder, const Config& config)
   std::vector<path> depths;
   for (const std::string& name : sorted_names(folder / "images")) {
     if (!is_image_name(name)) continue;
-    recording.frames.push_back({name, 0.0, folder / "images" / name, path()});
+    recording.frames.push_back({name, 0.0, {folder / "images" / name}});
     depths.push_back(folder / "depth" / path(name).replace_extension(".png"));
   }
   if (recording.frames.empty()) {

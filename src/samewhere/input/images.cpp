@@ -37,7 +37,7 @@ bool numbers_rise(const std::vector<FrameFiles>& frames) {
 std::optional<Recording> find_images(const path& folder, const Config& config) {
   Recording recording{.format = "images"};
   for (const std::string& name : sorted_names(folder)) {
-    if (is_image_name(name)) recording.frames.push_back({name, 0.0, folder / name, path()});
+    if (is_image_name(name)) recording.frames.push_back({name, 0.0, {folder / name}});
   }
   if (recording.frames.empty()) return std::nullopt;
   if (numbers_rise(recording.frames)) {
@@ -58,7 +58,7 @@ Recording read_image_list(const path& list, const Config& config) {
     if (!is_there(image)) {
       throw core::InputError(fmt::format("{}: the image {} does not exist", line.place, name));
     }
-    recording.frames.push_back({name, 0.0, image, path()});
+    recording.frames.push_back({name, 0.0, {image}});
   }
   if (recording.frames.empty()) throw core::InputError(list.string() + ": lists no image");
   stamp_by_position(recording.frames, fps_of(config));

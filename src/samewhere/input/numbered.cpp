@@ -12,13 +12,13 @@ void stamp_by_number(std::vector<FrameFiles>& frames, double fps) {
   for (FrameFiles& frame : frames) {
     const std::optional<int> number = frame_number(frame.name);
     if (!number) {
-      throw core::InputError(frame.image.string() +
+      throw core::InputError(frame.images.front().string() +
                              ": has no frame number (of at most nine digits) in its name");
     }
     if (last != nullptr && *number <= last_number) {
       throw core::InputError(
           fmt::format("{}: has frame number {} after {} of {}, expected numbers that rise",
-                      frame.image.string(), *number, last_number, last->name));
+                      frame.images.front().string(), *number, last_number, last->name));
     }
     frame.stamp_s = *number / fps;
     last_number = *number;

@@ -38,13 +38,14 @@ void check_config(const Config& config) {
                                  folder.string(), (folder / name).string()));
   }
   throw InputError(folder.string() +
-                   ": holds no known recording; looked for rgb.txt (TUM RGB-D), "
+                   ": holds no known recording; looked for rgb.txt (TUM RGB-D), mav0/ (EuRoC), "
                    "frame-*.color.png or .jpg (7-Scenes), images/ with depth/, K.txt or poses.txt "
                    "(HoloLens), *.jpg, *.jpeg or *.png (images)");
 }
 
 Recording read_folder(const path& folder, const Config& config) {
-  for (const auto& find : {&find_tum_rgbd, &find_seven_scenes, &find_hololens, &find_images}) {
+  for (const auto& find :
+       {&find_tum_rgbd, &find_euroc, &find_seven_scenes, &find_hololens, &find_images}) {
     if (std::optional<Recording> recording = find(folder, config)) return *std::move(recording);
   }
   fail_unknown(folder);
@@ -63,7 +64,9 @@ Recording read_list(const path& list, const Config& config) {
 std::string name_of(const path& source) {
   std::error_code error;  // on an error the path is empty, and so is the name
   const path whole = std::filesystem::canonical(source, error);
-  return is_folder(whole) ? whole.filename().string() : whole.stem().string();
+  if (!is_folder(whole)) return whole.stem().string();
+  // all EuRoC recordings call their only folder the same
+  return (whole.filename() == "mav0" ? whole.parent_path() : whole).filename().string();
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include <samewhere/core/frame.hpp>
+#include <samewhere/core/rig.hpp>
 #include <samewhere/core/truth.hpp>
 
 namespace samewhere::input {
@@ -13,16 +14,18 @@ namespace samewhere::input {
 struct FrameFiles {
   std::string name;  // for messages
   double stamp_s = 0.0;
-  std::filesystem::path image;
-  std::filesystem::path depth;  // empty: this frame has none
+  std::vector<std::filesystem::path> images = {};  // one per camera, at least one
+  std::filesystem::path depth = {};                // empty: this frame has none
 };
 
 // A recording of any format, before its images are read.
 struct Recording {
   std::string format;
-  std::vector<FrameFiles> frames = {};
+  std::vector<FrameFiles> frames = {};  // all with as many images
   double depth_units_per_m = 1000.0;
-  std::filesystem::path camera_file = {};  // empty: the camera is not known
+  core::Rig rig = {};                      // no camera in it: the format tells of none
+  std::filesystem::path camera_file = {};  // if not empty, it says what camera 0 is
+  std::vector<core::ImuSample> imu = {};   // stamps rise
   core::Truth truth = {};
 };
 

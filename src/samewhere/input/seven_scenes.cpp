@@ -25,7 +25,8 @@ bool is_colour_name(const std::string& name) {
 
 // The file that belongs to frame-000012.color.png by its ending, .depth.png or .pose.txt.
 path sibling(const FrameFiles& frame, std::string_view ending) {
-  return frame.image.parent_path() / (frame.image.stem().stem().string() + std::string(ending));
+  const path& image = frame.images.front();
+  return image.parent_path() / (image.stem().stem().string() + std::string(ending));
 }
 
 core::Rigid3 read_pose(const path& file) {
@@ -60,7 +61,7 @@ core::Trajectory read_poses(const std::vector<FrameFiles>& frames) {
 std::optional<Recording> find_seven_scenes(const path& folder, const Config& config) {
   Recording recording{.format = "7-Scenes"};
   for (const std::string& name : sorted_names(folder)) {
-    if (is_colour_name(name)) recording.frames.push_back({name, 0.0, folder / name, path()});
+    if (is_colour_name(name)) recording.frames.push_back({name, 0.0, {folder / name}});
   }
   if (recording.frames.empty()) return std::nullopt;
   stamp_by_number(recording.frames, config.fps > 0.0 ? config.fps : kFps);

@@ -67,7 +67,7 @@ std::optional<Recording> find_tum_rgbd(const path& folder, const Config& config)
   if (!is_there(folder / "rgb.txt")) return std::nullopt;
   Recording recording{.format = "TUM RGB-D", .depth_units_per_m = kDepthUnitsPerM};
   for (const StampedName& file : read_stamped_names(folder / "rgb.txt")) {
-    recording.frames.push_back({file.name, file.stamp_s, existing(folder, file, "colour"), path()});
+    recording.frames.push_back({file.name, file.stamp_s, {existing(folder, file, "colour")}});
   }
   if (recording.frames.empty()) {
     throw InputError((folder / "rgb.txt").string() + ": lists no image");

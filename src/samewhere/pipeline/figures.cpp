@@ -60,6 +60,7 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory);
   evaluation.num_candidates = findings.num_candidates;
   evaluation.loops = evaluate::check_loops(findings.loops, truth);
+  evaluation.knows_impostors = !truth.impostors.empty();
   return evaluation;
 }
 
@@ -81,6 +82,10 @@ RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
                                                   findings.window_frames);
     evaluation.accepted = evaluate::count_accepted(*truth.places, as_matches(findings.accepted),
                                                    findings.window_frames);
+  }
+  if (!truth.impostors.empty()) {
+    evaluation.num_impostors = evaluate::count_accepted_impostors(
+        truth.impostors, as_matches(findings.accepted), findings.window_frames);
   }
   return evaluation;
 }
@@ -109,6 +114,9 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   figures.push_back(
       {"loops accepted: right / wrong / unknown",
        fmt::format("{} / {} / {}", loops.num_right, loops.num_wrong, loops.num_unknown)});
+  if (evaluation.knows_impostors) {
+    figures.push_back({"of the wrong ones, impostors", std::to_string(loops.num_impostors)});
+  }
   return figures;
 }
 
@@ -120,6 +128,9 @@ std::vector<Figure> figures_of(const RecognitionEvaluation& evaluation) {
          fmt::format("{} / {} / {}", counts->num_right, counts->num_wrong, counts->num_near)});
   } else {
     figures.push_back({"accepted", std::to_string(evaluation.num_accepted)});
+  }
+  if (evaluation.num_impostors) {
+    figures.push_back({"of the wrong ones, impostors", std::to_string(*evaluation.num_impostors)});
   }
   if (const auto& curve = evaluation.curve) {
     figures.push_back({"queries, of these with a loop",

@@ -32,6 +32,7 @@ struct SlamEvaluation {
   std::optional<evaluate::RpeResult> rpe;  // over 1 s
   int num_candidates = 0;
   evaluate::LoopCheck loops;
+  bool knows_impostors = false;  // whether the truth names any
 };
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth);
@@ -54,6 +55,7 @@ struct RecognitionEvaluation {
   int num_accepted = 0;
   std::optional<evaluate::PrecisionRecall> curve;    // of the scores of all matches
   std::optional<evaluate::AcceptedCounts> accepted;  // at the shipped threshold
+  std::optional<int> num_impostors;                  // of the accepted; only if the truth names any
 };
 
 // A run that was cut short is scored as far as it went: queries that were never asked count as

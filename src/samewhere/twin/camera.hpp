@@ -17,4 +17,7 @@ inline constexpr core::PinholeRadtan kTwinCamera = {.width_px = 640,
                                                     .p2 = -0.0004,
                                                     .k3 = 0.0};
 
+// From the left camera of a stereo pair to the right one.
+inline constexpr double kStereoBaseline_m = 0.11;
+
 }  // namespace samewhere::twin

@@ -8,12 +8,17 @@ namespace samewhere::twin {
 struct Config {
   bool ideal_depth = false;  // exact depth at every pixel instead of the sensor model
   int num_frames = 0;        // render only the first frames of the walk; 0 = all
+  int num_workers = 0;       // threads that render; 0: one per processor. The frames are the same
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("ideal_depth", config.ideal_depth, {.help = "exact depth at every pixel, no sensor model"});
   visit("num_frames", config.num_frames,
         {.help = "render only the first frames of the walk, 0 = all", .min = 0});
+  visit("num_workers", config.num_workers,
+        {.help = "threads that render, 0 = one per processor; the frames are the same",
+         .min = 0,
+         .max = 64});
 }
 
 }  // namespace samewhere::twin

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <numbers>
 
+#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/twin/light.hpp>
 #include <samewhere/twin/texture.hpp>
 
@@ -10,27 +13,29 @@ namespace {
 
 constexpr float kOffSurface_m = 1e-3F;
 constexpr float kEmitterRange_m = 7.0F;
-constexpr int kNumGatherRays = 32;
+constexpr int kNumBakeRays = 32;
+constexpr int kNumMovingRays = 16;
 // light of all bounces over that of the first, in a corridor whose surfaces reflect 40 %
 constexpr float kAllBounces = 1.0F / (1.0F - 0.4F);
 constexpr float kPi = std::numbers::pi_v<float>;
 // a grid point with another thing in front of it has no light of its own
 const Colour kBuried = Colour::Constant(-1.0F);
-
 const Colour kShade = Colour::Constant(0.1F);
 
 bool is_buried(const Colour& colour) { return colour[0] < 0.0F; }
 
-struct SurfacePoint {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  // a hair in front of the surface
-  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
-};
-
-// A small piece of a lamp or window.
-struct Emitter {
-  SurfacePoint at;
-  Colour power = Colour::Zero();  // radiance times area over pi
-};
+// Calls work(i) for 0 <= i < count on several threads.
+template <class Work>
+void share_out(int count, const Work& work) {
+  const int num_threads = core::num_hardware_threads();
+  std::deque<core::WorkerThread> threads;
+  for (int first = 0; first < num_threads; ++first) {
+    threads.emplace_back([=, &work] {
+      for (int i = first; i < count; i += num_threads) work(i);
+    });
+  }
+  for (auto& thread : threads) thread.join();
+}
 
 std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
   constexpr float kPiece_m = 0.4F;
@@ -48,131 +53,50 @@ std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
       }
     }
   }
+  std::stable_sort(emitters.begin(), emitters.end(), [](const Emitter& a, const Emitter& b) {
+    return a.at.position.x() < b.at.position.x();
+  });
   return emitters;
-}
-
-Colour light_from(const Emitter& emitter, const SurfacePoint& point, const RayScene& rays) {
-  const Eigen::Vector3f to_emitter = emitter.at.position - point.position;
-  const float squared_m2 = to_emitter.squaredNorm();
-  const float cosines =
-      point.normal.dot(to_emitter) * -emitter.at.normal.dot(to_emitter) / squared_m2;
-  if (point.normal.dot(to_emitter) <= 0.0F || cosines <= 0.0F) return Colour::Zero();
-  const float window = 1.0F - squared_m2 / (kEmitterRange_m * kEmitterRange_m);
-  if (window <= 0.0F || rays.is_blocked({point.position, to_emitter})) return Colour::Zero();
-  constexpr float kPieceSize_m2 = 0.02F;  // tames pieces very close by
-  return emitter.power * (cosines * window / (squared_m2 + kPieceSize_m2));
-}
-
-Colour light_from_all(const std::vector<Emitter>& emitters, const SurfacePoint& point,
-                      const RayScene& rays) {
-  Colour sum = Colour::Zero();
-  for (const auto& emitter : emitters) sum += light_from(emitter, point, rays);
-  return sum;
 }
 
 // Directions around +z, spread evenly with a density that follows the cosine (a Fibonacci spiral on
 // the disc, lifted onto the hemisphere). The same everywhere, so that neighbours do not differ by
 // chance.
-std::vector<Eigen::Vector3f> gather_directions() {
+template <int kCount>
+std::array<Eigen::Vector3f, kCount> directions_around_z() {
   constexpr float kGoldenAngle_rad = 2.3999632F;
-  std::vector<Eigen::Vector3f> directions;
-  for (int i = 0; i < kNumGatherRays; ++i) {
-    const float squared = (static_cast<float>(i) + 0.5F) / static_cast<float>(kNumGatherRays);
+  std::array<Eigen::Vector3f, kCount> directions;
+  for (int i = 0; i < kCount; ++i) {
+    const float squared = (static_cast<float>(i) + 0.5F) / static_cast<float>(kCount);
     const float angle_rad = kGoldenAngle_rad * static_cast<float>(i);
-    directions.emplace_back(std::sqrt(squared) * std::cos(angle_rad),
-                            std::sqrt(squared) * std::sin(angle_rad), std::sqrt(1.0F - squared));
+    directions[static_cast<std::size_t>(i)] = {std::sqrt(squared) * std::cos(angle_rad),
+                                               std::sqrt(squared) * std::sin(angle_rad),
+                                               std::sqrt(1.0F - squared)};
   }
   return directions;
 }
 
-class Baker {
- public:
-  Baker(const std::vector<Rectangle>& rectangles, const RayScene& rays)
-      : rectangles_(rectangles),
-        rays_(rays),
-        emitters_(emitters_of(rectangles)),
-        directions_(gather_directions()) {}
+// Two directions in the surface, the same for all surfaces that look the same way.
+Eigen::Matrix3f world_from_surface(const Eigen::Vector3f& normal) {
+  const bool is_upright = std::abs(normal.z()) > 0.9F;
+  const Eigen::Vector3f other = is_upright ? Eigen::Vector3f::UnitX() : Eigen::Vector3f::UnitZ();
+  Eigen::Matrix3f axes;
+  axes.col(2) = normal;
+  axes.col(0) = other.cross(normal).normalized();
+  axes.col(1) = normal.cross(axes.col(0));
+  return axes;
+}
 
-  // For every grid point: the value that `compute` gives for it. Buried points take the mean of
-  // their neighbours.
-  template <class Compute>
-  SurfaceColours fill(const Compute& compute) const {
-    SurfaceColours colours(rectangles_);
-    for (int r = 0; r < static_cast<int>(rectangles_.size()); ++r) {
-      for (int row = 0; row < colours.num_rows(r); ++row) {
-        for (int column = 0; column < colours.num_columns(r); ++column) {
-          const SurfacePoint point = surface_point(r, colours.position(r, column, row));
-          colours.value(r, column, row) = covers(point) ? kBuried : compute(r, point);
-        }
-      }
-      uncover(colours, r);
-    }
-    return colours;
-  }
-
-  Colour direct(const SurfacePoint& point) const { return light_from_all(emitters_, point, rays_); }
-
-  // Mean light that arrives from the surfaces around, lit as `light` says.
-  Colour gathered(int rectangle, const SurfacePoint& point, const SurfaceColours& light) const {
-    const Rectangle& r = rectangles_[static_cast<std::size_t>(rectangle)];
-    Colour sum = Colour::Zero();
-    for (const auto& around_z : directions_) {
-      const Eigen::Vector3f direction =
-          around_z.x() * r.right + around_z.y() * r.up + around_z.z() * point.normal;
-      const auto hit = rays_.first_hit({point.position, direction});
-      if (!hit) continue;
-      const Rectangle& seen = rectangles_[static_cast<std::size_t>(hit->rectangle)];
-      if (is_emitting(seen.material)) continue;  // direct light already
-      const Eigen::Vector3f position = point.position + hit->reach * direction;
-      sum += mean_reflectance(seen.material) * light.at(hit->rectangle, seen.right_up_m(position));
-    }
-    return sum / static_cast<float>(kNumGatherRays);
-  }
-
- private:
-  SurfacePoint surface_point(int rectangle, const Eigen::Vector2f& right_up_m) const {
-    const Rectangle& r = rectangles_[static_cast<std::size_t>(rectangle)];
-    return {r.at(right_up_m) + kOffSurface_m * r.normal(), r.normal()};
-  }
-
-  // Whether something stands on this point: straight ahead one then sees its back from within.
-  bool covers(const SurfacePoint& point) const {
-    const auto hit = rays_.first_hit({point.position, point.normal});
-    if (!hit) return true;
-    const Rectangle& seen = rectangles_[static_cast<std::size_t>(hit->rectangle)];
-    return seen.normal().dot(point.normal) > 0.0F;
-  }
-
-  // Light from the edges into the buried points. Faces that are buried altogether are in the
-  // shade: an edge of them may still look out.
-  static void uncover(SurfaceColours& colours, int r) {
-    constexpr int kMaxSteps = 64;
-    bool is_done = false;
-    for (int step = 0; !is_done && step < kMaxSteps; ++step) is_done = spread(colours, r);
-    if (is_done) return;
-    for (int row = 0; row < colours.num_rows(r); ++row) {
-      for (int column = 0; column < colours.num_columns(r); ++column) {
-        Colour& value = colours.value(r, column, row);
-        if (is_buried(value)) value = kShade;
-      }
-    }
-  }
-
-  // One step of light into buried points; true if none is left.
-  static bool spread(SurfaceColours& colours, int r);
-
-  const std::vector<Rectangle>& rectangles_;
-  const RayScene& rays_;
-  std::vector<Emitter> emitters_;
-  std::vector<Eigen::Vector3f> directions_;
-};
+SurfacePoint surface_point(const Rectangle& r, const Eigen::Vector2f& right_up_m) {
+  return {r.at(right_up_m) + kOffSurface_m * r.normal(), r.normal()};
+}
 
 // Mean of the neighbours of a grid point that are not buried; buried if all are.
 Colour mean_of_neighbours(SurfaceColours& colours, int r, const Eigen::Vector2i& at) {
   Colour sum = Colour::Zero();
   float num_lit = 0.0F;
-  const int last_row = std::min(at.y() + 1, colours.num_rows(r) - 1);
-  const int last_column = std::min(at.x() + 1, colours.num_columns(r) - 1);
+  const int last_row = std::min(at.y() + 1, colours.rows(r).num_points - 1);
+  const int last_column = std::min(at.x() + 1, colours.columns(r).num_points - 1);
   for (int row = std::max(at.y() - 1, 0); row <= last_row; ++row) {
     for (int column = std::max(at.x() - 1, 0); column <= last_column; ++column) {
       const Colour& value = colours.value(r, column, row);
@@ -184,32 +108,211 @@ Colour mean_of_neighbours(SurfaceColours& colours, int r, const Eigen::Vector2i&
   return num_lit > 0.0F ? Colour(sum / num_lit) : kBuried;
 }
 
-bool Baker::spread(SurfaceColours& colours, int r) {
+template <class Visit>
+void for_each_point(const SurfaceColours& colours, int r, const Visit& visit) {
+  for (int row = 0; row < colours.rows(r).num_points; ++row) {
+    for (int column = 0; column < colours.columns(r).num_points; ++column) visit(column, row);
+  }
+}
+
+// One step of light into buried points; true if none is left.
+bool spread(SurfaceColours& colours, int r) {
   bool is_done = true;
   std::vector<std::pair<Eigen::Vector2i, Colour>> found;
-  for (int row = 0; row < colours.num_rows(r); ++row) {
-    for (int column = 0; column < colours.num_columns(r); ++column) {
-      if (!is_buried(colours.value(r, column, row))) continue;
-      found.emplace_back(Eigen::Vector2i(column, row),
-                         mean_of_neighbours(colours, r, {column, row}));
-      is_done = is_done && !is_buried(found.back().second);
-    }
-  }
+  for_each_point(colours, r, [&](int column, int row) {
+    if (!is_buried(colours.value(r, column, row))) return;
+    found.emplace_back(Eigen::Vector2i(column, row), mean_of_neighbours(colours, r, {column, row}));
+    is_done = is_done && !is_buried(found.back().second);
+  });
   for (const auto& [at, colour] : found) colours.value(r, at.x(), at.y()) = colour;
   return is_done;
 }
 
+// Light from the edges into the buried points. Faces that are buried altogether are in the shade:
+// an edge of them may still look out.
+void uncover(SurfaceColours& colours, int r) {
+  constexpr int kMaxSteps = 64;
+  bool is_done = false;
+  for (int step = 0; !is_done && step < kMaxSteps; ++step) is_done = spread(colours, r);
+  if (is_done) return;
+  for_each_point(colours, r, [&](int column, int row) {
+    Colour& value = colours.value(r, column, row);
+    if (is_buried(value)) value = kShade;
+  });
+}
+
+// The value between points of a coarser grid that are `step` apart; nothing if they differ so much
+// that light changes there.
+std::optional<Colour> between(SurfaceColours& colours, int r, const Eigen::Array2i& at,
+                              const Eigen::Array2i& step) {
+  constexpr float kAlike_ratio = 0.06F;
+  constexpr float kAlike = 0.004F;
+  const Eigen::Array2i low = at / step * step;
+  const Eigen::Array2i high = low + (at - low).min(1) * step;
+  const std::array<Colour, 4> corners = {
+      colours.value(r, low.x(), low.y()), colours.value(r, high.x(), low.y()),
+      colours.value(r, low.x(), high.y()), colours.value(r, high.x(), high.y())};
+  Colour least = corners[0];
+  Colour most = corners[0];
+  for (const auto& corner : corners) {
+    least = least.min(corner);
+    most = most.max(corner);
+  }
+  if (is_buried(least) || (most - least > kAlike + kAlike_ratio * most).any()) return std::nullopt;
+  return 0.25F * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
+// Between points of a grid, columns and rows.
+struct Steps {
+  Eigen::Array2i fine = Eigen::Array2i::Ones();
+  Eigen::Array2i coarser = Eigen::Array2i::Zero();  // of the grid before it; 0: there was none
+};
+
+// The points of the fine grid that were not on the coarser one.
+template <class Visit>
+void for_each_new_point(const SurfaceColours& colours, int r, const Steps& steps,
+                        const Visit& visit) {
+  for (int row = 0; row < colours.rows(r).num_points; row += steps.fine.y()) {
+    for (int column = 0; column < colours.columns(r).num_points; column += steps.fine.x()) {
+      const Eigen::Array2i at(column, row);
+      const bool is_new =
+          steps.coarser.x() == 0 || (at != at / steps.coarser * steps.coarser).any();
+      if (is_new) visit(at);
+    }
+  }
+}
+
+// What follows from points that are known already.
+std::optional<Colour> known_value(SurfaceColours& colours, int r, const Eigen::Array2i& at,
+                                  const Eigen::Array2i& coarser) {
+  if (colours.columns(r).is_thin && at.x() > 0) return colours.value(r, 0, at.y());
+  if (colours.rows(r).is_thin && at.y() > 0) return colours.value(r, at.x(), 0);
+  return coarser.x() > 0 ? between(colours, r, at, coarser) : std::nullopt;
+}
+
 }  // namespace
 
-SurfaceColours light_on(const std::vector<Rectangle>& rectangles, const RayScene& rays) {
-  const Baker baker(rectangles, rays);
-  const SurfaceColours direct =
-      baker.fill([&](int, const SurfacePoint& p) { return baker.direct(p); });
-  return baker.fill([&](int r, const SurfacePoint& p) -> Colour {
-    const Rectangle& rectangle = rectangles[static_cast<std::size_t>(r)];
-    return direct.at(r, rectangle.right_up_m(p.position)) +
-           kAllBounces * baker.gathered(r, p, direct);
+Light::Light(const std::vector<Rectangle>& rectangles, const RayScene& rays)
+    : rectangles_(rectangles),
+      rays_(rays),
+      emitters_(emitters_of(rectangles)),
+      on_surfaces_(rectangles) {
+  SurfaceColours direct(rectangles);
+  fill(direct, [this](int r) {
+    const Rectangle& rectangle = rectangles_[static_cast<std::size_t>(r)];
+    const auto emitters = emitters_near(surface_point(rectangle, 0.5F * rectangle.size_m),
+                                        0.5F * rectangle.size_m.norm());
+    return [this, emitters](const SurfacePoint& p) { return light_from(emitters, p); };
   });
+  const auto directions = directions_around_z<kNumBakeRays>();
+  fill(on_surfaces_,
+       [&](int) { return [&](const SurfacePoint& p) { return gathered(p, directions, direct); }; });
+  for (int r = 0; r < static_cast<int>(rectangles.size()); ++r) {
+    for_each_point(direct, r, [&](int column, int row) {
+      Colour& value = on_surfaces_.value(r, column, row);
+      value = direct.value(r, column, row) + kAllBounces * value;
+    });
+  }
+}
+
+template <class Compute>
+void Light::fill(SurfaceColours& colours, const Compute& compute) const {
+  share_out(static_cast<int>(rectangles_.size()), [&](int r) {
+    if (is_emitting(rectangles_[static_cast<std::size_t>(r)].material)) return;
+    fill_rectangle(colours, r, compute(r));
+    uncover(colours, r);
+  });
+}
+
+// From coarse to fine.
+template <class Compute>
+void Light::fill_rectangle(SurfaceColours& colours, int r, const Compute& compute) const {
+  const int column_step = colours.columns(r).coarse_step;
+  const int row_step = colours.rows(r).coarse_step;
+  Steps steps;
+  for (int step = std::max(column_step, row_step); step > 0; step /= 2) {
+    steps.fine = {std::min(step, column_step), std::min(step, row_step)};
+    for_each_new_point(colours, r, steps, [&](const Eigen::Array2i& at) {
+      const auto known = known_value(colours, r, at, steps.coarser);
+      colours.value(r, at.x(), at.y()) =
+          known ? *known : value_at_point(colours.position(r, at.x(), at.y()), r, compute);
+    });
+    steps.coarser = steps.fine;
+  }
+}
+
+template <class Compute>
+Colour Light::value_at_point(const Eigen::Vector2f& right_up_m, int r,
+                             const Compute& compute) const {
+  const SurfacePoint point = surface_point(rectangles_[static_cast<std::size_t>(r)], right_up_m);
+  return covers(point) ? kBuried : compute(point);
+}
+
+// Whether something stands on this point: straight ahead one then sees its back from within.
+bool Light::covers(const SurfacePoint& point) const {
+  const auto hit = rays_.first_hit({point.position, point.normal});
+  if (!hit) return true;
+  const Rectangle& seen = rectangles_[static_cast<std::size_t>(hit->rectangle)];
+  return seen.normal().dot(point.normal) > 0.0F;
+}
+
+std::vector<Emitter> Light::emitters_near(const SurfacePoint& point, float distance_m) const {
+  const float range_m = kEmitterRange_m + distance_m;
+  const auto by_x = [](const Emitter& emitter, float x) { return emitter.at.position.x() < x; };
+  const float first_x = point.position.x() - range_m;
+  std::vector<Emitter> near;
+  for (auto emitter = std::lower_bound(emitters_.begin(), emitters_.end(), first_x, by_x);
+       emitter != emitters_.end() && emitter->at.position.x() < point.position.x() + range_m;
+       ++emitter) {
+    const Eigen::Vector3f to_emitter = emitter->at.position - point.position;
+    const bool may_shine = to_emitter.squaredNorm() < range_m * range_m &&
+                           to_emitter.dot(point.normal) > 0.0F &&
+                           -to_emitter.dot(emitter->at.normal) + distance_m > 0.0F;
+    if (may_shine) near.push_back(*emitter);
+  }
+  return near;
+}
+
+Colour Light::light_from(const Emitter& emitter, const SurfacePoint& point) const {
+  const Eigen::Vector3f to_emitter = emitter.at.position - point.position;
+  const float squared_m2 = to_emitter.squaredNorm();
+  const float window = 1.0F - squared_m2 / (kEmitterRange_m * kEmitterRange_m);
+  if (window <= 0.0F) return Colour::Zero();
+  const float cosines =
+      point.normal.dot(to_emitter) * -emitter.at.normal.dot(to_emitter) / squared_m2;
+  if (point.normal.dot(to_emitter) <= 0.0F || cosines <= 0.0F) return Colour::Zero();
+  if (rays_.is_blocked({point.position, to_emitter})) return Colour::Zero();
+  constexpr float kPieceSize_m2 = 0.02F;  // tames pieces very close by
+  return emitter.power * (cosines * window / (squared_m2 + kPieceSize_m2));
+}
+
+Colour Light::light_from(const std::vector<Emitter>& emitters, const SurfacePoint& point) const {
+  Colour sum = Colour::Zero();
+  for (const auto& emitter : emitters) sum += light_from(emitter, point);
+  return sum;
+}
+
+Colour Light::gathered(const SurfacePoint& point, std::span<const Eigen::Vector3f> around_z,
+                       const SurfaceColours& light) const {
+  const Eigen::Matrix3f axes = world_from_surface(point.normal);
+  std::array<Eigen::Vector3f, kNumBakeRays> directions;
+  std::array<Hit, kNumBakeRays> hits;
+  for (std::size_t i = 0; i < around_z.size(); ++i) directions[i] = axes * around_z[i];
+  rays_.first_hits(point.position, std::span(directions).first(around_z.size()), hits);
+  Colour sum = Colour::Zero();
+  for (std::size_t i = 0; i < around_z.size(); ++i) {
+    if (hits[i].rectangle < 0) continue;
+    const Rectangle& seen = rectangles_[static_cast<std::size_t>(hits[i].rectangle)];
+    if (is_emitting(seen.material)) continue;  // direct light already
+    const Eigen::Vector3f position = point.position + hits[i].reach * directions[i];
+    sum += mean_reflectance(seen.material) * light.at(hits[i].rectangle, seen.right_up_m(position));
+  }
+  return sum / static_cast<float>(around_z.size());
+}
+
+Colour Light::falling_on(const SurfacePoint& point) const {
+  static const auto directions = directions_around_z<kNumMovingRays>();
+  return light_from(emitters_near(point, 0.0F), point) + gathered(point, directions, on_surfaces_);
 }
 
 }  // namespace samewhere::twin

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <samewhere/twin/noise.hpp>
 #include <samewhere/twin/photograph.hpp>
@@ -20,47 +21,47 @@ class ToneCurve {
               ? light
               : kShoulder + (1.0F - kShoulder) *
                                 (1.0F - std::exp((kShoulder - light) / (1.0F - kShoulder)));
-      levels_[i] = 255.0F * std::pow(rolled, 1.0F / 2.2F);
+      levels_[i] = 255.0F * gamma_coded(rolled);
     }
   }
 
   float level(float light) const {
-    // colour noise may take a dark pixel below zero
+    // noise may take a dark pixel below zero
     const float step =
         std::clamp(light * kStepsPerUnit, 0.0F, static_cast<float>(levels_.size() - 1));
     return levels_[static_cast<std::size_t>(step)];
   }
 
  private:
+  // sRGB: straight near black, where a power would make mountains of the noise
+  static float gamma_coded(float light) {
+    return light < 0.0031308F ? 12.92F * light : 1.055F * std::pow(light, 1.0F / 2.4F) - 0.055F;
+  }
+
   static constexpr float kShoulder = 0.7F;
   static constexpr float kStepsPerUnit = 4096.0F;
   std::array<float, 16384> levels_{};
 };
 
-constexpr float kSide = 0.0625F;
-constexpr float kMiddle = 1.0F - 2.0F * kSide;
-
-// The lens: a bell three pixels wide, [1 14 1] / 16 along rows and columns.
-cv::Mat blurred(const cv::Mat& radiance) {
-  cv::Mat along_rows = radiance.clone();
-  for (int y = 0; y < radiance.rows; ++y) {
-    const auto* const from = radiance.ptr<cv::Vec3f>(y);
-    auto* const to = along_rows.ptr<cv::Vec3f>(y);
-    for (int x = 1; x + 1 < radiance.cols; ++x) {
-      to[x] = kSide * (from[x - 1] + from[x + 1]) + kMiddle * from[x];
-    }
+// A row of the picture after the lens: a bell three pixels wide, [1 14 1] / 16 along rows and
+// columns.
+void blur_row(const cv::Mat& radiance, int y, std::vector<cv::Vec3f>& result) {
+  constexpr float kSide = 0.0625F;
+  constexpr float kMiddle = 1.0F - 2.0F * kSide;
+  const auto* const above = radiance.ptr<cv::Vec3f>(std::max(y - 1, 0));
+  const auto* const here = radiance.ptr<cv::Vec3f>(y);
+  const auto* const below = radiance.ptr<cv::Vec3f>(std::min(y + 1, radiance.rows - 1));
+  const auto blurred_down = [&](int x) {
+    return cv::Vec3f(kSide * (above[x] + below[x]) + kMiddle * here[x]);
+  };
+  cv::Vec3f before = blurred_down(0);
+  cv::Vec3f now = before;
+  for (int x = 0; x < radiance.cols; ++x) {
+    const cv::Vec3f after = blurred_down(std::min(x + 1, radiance.cols - 1));
+    result[static_cast<std::size_t>(x)] = kSide * (before + after) + kMiddle * now;
+    before = now;
+    now = after;
   }
-  cv::Mat result = along_rows.clone();
-  for (int y = 1; y + 1 < radiance.rows; ++y) {
-    const auto* const above = along_rows.ptr<cv::Vec3f>(y - 1);
-    const auto* const here = along_rows.ptr<cv::Vec3f>(y);
-    const auto* const below = along_rows.ptr<cv::Vec3f>(y + 1);
-    auto* const to = result.ptr<cv::Vec3f>(y);
-    for (int x = 0; x < radiance.cols; ++x) {
-      to[x] = kSide * (above[x] + below[x]) + kMiddle * here[x];
-    }
-  }
-  return result;
 }
 
 // Light that reaches a pixel over what reaches the middle.
@@ -71,31 +72,54 @@ float vignette(float x_px, float y_px, const cv::Size& size) {
   return 1.0F - kLossInCorner * 0.5F * (dx * dx + dy * dy);
 }
 
+// Standard deviation of the noise on a signal.
+class SensorNoise {
+ public:
+  explicit SensorNoise(float gain)
+      : shot_(kShotNoise * gain), read_(kReadNoise * kReadNoise * gain * gain) {}
+
+  float deviation(float signal) const { return std::sqrt(shot_ * signal + read_); }
+
+ private:
+  static constexpr float kShotNoise = 2.3e-4F;  // one over the photons that are white
+  static constexpr float kReadNoise = 7e-4F;
+
+  float shot_;  // variance over signal
+  float read_;  // variance
+};
+
+// Noise of the three channels of a pixel, of standard deviation 1: mostly common to them.
+std::array<float, 3> pixel_noise(std::uint64_t seed, std::uint64_t pixel) {
+  constexpr float kCommon = 0.78F;
+  constexpr float kOwn = 0.62F;
+  const std::uint64_t first = scramble(seed + 2 * pixel);
+  const std::uint64_t second = scramble(seed + 2 * pixel + 1);
+  const float common = kCommon * nearly_gaussian(static_cast<std::uint32_t>(first));
+  return {common + kOwn * nearly_gaussian(static_cast<std::uint32_t>(first >> 32)),
+          common + kOwn * nearly_gaussian(static_cast<std::uint32_t>(second)),
+          common + kOwn * nearly_gaussian(static_cast<std::uint32_t>(second >> 32))};
+}
+
 }  // namespace
 
-cv::Mat photograph(const cv::Mat& radiance, float gain, std::uint64_t seed) {
-  constexpr float kBrightnessNoise = 1.5F;  // grey levels
-  constexpr float kColourNoise = 1.2F;
+cv::Mat photograph(const cv::Mat& radiance, const Exposure& exposure, std::uint64_t seed) {
   static const ToneCurve tone;
-  const cv::Mat projected = blurred(radiance);
+  const SensorNoise sensor(exposure.gain);
+  std::vector<cv::Vec3f> light(static_cast<std::size_t>(radiance.cols));
   cv::Mat picture(radiance.size(), CV_8UC3);
   for (int y = 0; y < radiance.rows; ++y) {
-    const auto* const light = projected.ptr<cv::Vec3f>(y);
+    blur_row(radiance, y, light);
     auto* const level = picture.ptr<cv::Vec3b>(y);
     for (int x = 0; x < radiance.cols; ++x) {
       const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(radiance.cols) +
                          static_cast<std::uint64_t>(x);
-      const float scale =
-          gain * vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
-      const std::uint64_t first = scramble(seed + 2 * pixel);
-      const std::uint64_t second = scramble(seed + 2 * pixel + 1);
-      const float common = kBrightnessNoise * nearly_gaussian(static_cast<std::uint32_t>(first));
-      const std::uint64_t parts[3] = {first >> 32, second, second >> 32};
+      const float scale = exposure.signal_per_radiance() *
+                          vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
+      const std::array<float, 3> noise = pixel_noise(seed, pixel);
       for (int channel = 0; channel < 3; ++channel) {
-        const float noise =
-            common + kColourNoise * nearly_gaussian(static_cast<std::uint32_t>(parts[channel]));
-        level[x][channel] =
-            cv::saturate_cast<std::uint8_t>(tone.level(scale * light[x][channel]) + noise);
+        const float signal = scale * light[static_cast<std::size_t>(x)][channel];
+        level[x][channel] = cv::saturate_cast<std::uint8_t>(tone.level(
+            signal + sensor.deviation(signal) * noise[static_cast<std::size_t>(channel)]));
       }
     }
   }

@@ -4,11 +4,14 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <samewhere/twin/exposure.hpp>
+
 namespace samewhere::twin {
 
 // What happens to light on its way into the file: a little blur of the lens, vignetting, exposure,
-// a tone curve that rolls off, gamma, and noise that follows from the seed. Takes linear radiance
-// (CV_32FC3) and the exposure over the usual one; gives CV_8UC3.
-cv::Mat photograph(const cv::Mat& radiance, float gain, std::uint64_t seed);
+// the noise of photons and of reading them out (both grow with the gain, and follow from the seed),
+// a tone curve that rolls off, gamma. Takes linear radiance (CV_32FC3), gives CV_8UC3. Cameras of a
+// rig take different seeds.
+cv::Mat photograph(const cv::Mat& radiance, const Exposure& exposure, std::uint64_t seed);
 
 }  // namespace samewhere::twin

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/random.hpp>
-#include <samewhere/twin/office_loop.hpp>
 #include <samewhere/twin/ray_scene.hpp>
 
 namespace samewhere::twin {
@@ -87,17 +86,6 @@ TEST(RayScene, AWayIsBlockedByWhatStandsBeforeItsEnd) {
   EXPECT_FALSE(rays.is_blocked({origin, {2.0F, 0.0F, 0.0F}}));  // ends on it
   EXPECT_FALSE(rays.is_blocked({origin, {-3.0F, 0.0F, 0.0F}}));
   EXPECT_FALSE(rays.is_blocked({origin, {3.0F, 2.0F, 0.0F}}));
-}
-
-TEST(OfficeLoop, NoRayEscapes) {
-  const auto rectangles = office_loop_surfaces(3, 0.5);
-  const RayScene rays(rectangles);
-  core::Random random(7);
-  for (int i = 0; i < 20000; ++i) {
-    const Ray ray{{static_cast<float>(random.uniform(-6.0, 6.0)), -4.0F, 1.5F},
-                  random_point(random, {1.0F, 1.0F, 1.0F})};
-    ASSERT_TRUE(rays.first_hit(ray).has_value()) << "ray " << i;
-  }
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/renderer.hpp>
@@ -15,9 +18,10 @@ constexpr float kMaxStretch = 3.0F;
 constexpr float kBrightest = 1.5F;
 
 bool is_edge(const cv::Mat& surface, const cv::Point& at) {
-  const int here = surface.at<int>(at);
-  return surface.at<int>(at.y, at.x - 1) != here || surface.at<int>(at.y, at.x + 1) != here ||
-         surface.at<int>(at.y - 1, at.x) != here || surface.at<int>(at.y + 1, at.x) != here;
+  const int* const row = surface.ptr<int>(at.y);
+  const int here = row[at.x];
+  return row[at.x - 1] != here || row[at.x + 1] != here ||
+         surface.ptr<int>(at.y - 1)[at.x] != here || surface.ptr<int>(at.y + 1)[at.x] != here;
 }
 
 }  // namespace
@@ -27,17 +31,20 @@ struct Renderer::Eye {
   Eigen::Vector3f position;
 };
 
-struct Renderer::Sample {
-  Colour radiance = Colour::Zero();
-  float depth_m = 0.0F;
-  float incidence = 0.0F;
-  int surface = -1;
+// Neighbouring pixels of a row that see the same rectangle.
+struct Renderer::Run {
+  int y = 0;
+  int first_x = 0;
+  std::span<const Eigen::Vector3f> directions;
+  std::span<const Hit> hits;
+
+  int surface() const { return hits.front().rectangle; }
 };
 
 Renderer::Renderer(const Building& building, const RayScene& rays, const core::Camera& camera)
     : building_(building),
       rays_(rays),
-      light_(light_on(building.rectangles, rays)),
+      light_(building.rectangles, rays),
       width_px_(geometry::pinhole(camera).width_px),
       height_px_(geometry::pinhole(camera).height_px),
       pixel_rad_(static_cast<float>(1.0 / geometry::focal_px(camera))) {
@@ -60,49 +67,110 @@ Eigen::Vector3f Renderer::ray(float x_px, float y_px) const {
          (y_px - static_cast<float>(row)) * (rays_in_camera_[below] - start);
 }
 
-Renderer::Sample Renderer::sample(const Eye& eye, const Eigen::Vector3f& ray_in_camera) const {
-  const Ray ray{eye.position, eye.world_from_camera * ray_in_camera};
-  const std::optional<Hit> hit = rays_.first_hit(ray);
-  if (!hit) return {};
-  const Rectangle& rectangle = building_.rectangles[static_cast<std::size_t>(hit->rectangle)];
-  const Eigen::Vector2f uv = rectangle.right_up_m(ray.origin + hit->reach * ray.direction);
-  const float incidence =
-      std::abs(ray.direction.dot(rectangle.normal())) / std::sqrt(ray.direction.squaredNorm());
-  const float stretch = std::min(1.0F / std::sqrt(incidence), kMaxStretch);
-  const TexturePoint point{uv.x(), uv.y(), hit->reach * pixel_rad_ * stretch};
-  const Colour shade = reflectance(rectangle, point);
-  const Colour light = is_emitting(rectangle.material)
-                           ? Colour::Constant(rectangle.material.radiance)
-                           : light_.at(hit->rectangle, uv);
-  return {shade * light, hit->reach, incidence, hit->rectangle};
+const Rectangle& Renderer::rectangle(const MovingThings& moving, int surface) const {
+  const int num_at_rest = static_cast<int>(building_.rectangles.size());
+  return surface < num_at_rest ? building_.rectangles[static_cast<std::size_t>(surface)]
+                               : moving.rectangle(surface - num_at_rest);
 }
 
-void Renderer::render_pixels(const Eye& eye, View& view) const {
-  for (int y = 0; y < height_px_; ++y) {
-    auto* const radiance = view.radiance.ptr<cv::Vec3f>(y);
-    auto* const depth_m = view.depth_m.ptr<float>(y);
-    auto* const incidence = view.incidence.ptr<float>(y);
-    auto* const surface = view.surface.ptr<int>(y);
-    const Eigen::Vector3f* const rays =
-        &rays_in_camera_[static_cast<std::size_t>(y * (width_px_ + 1))];
-    for (int x = 0; x < width_px_; ++x) {
-      const Sample seen = sample(eye, rays[x]);
-      radiance[x] = {seen.radiance[0], seen.radiance[1], seen.radiance[2]};
-      depth_m[x] = seen.depth_m;
-      incidence[x] = seen.incidence;
-      surface[x] = seen.surface;
+void Renderer::shade_run(const Eye& eye, MovingThings& moving, const Run& run, View& view) const {
+  const int num_at_rest = static_cast<int>(building_.rectangles.size());
+  const Rectangle& r = rectangle(moving, run.surface());
+  const Eigen::Vector3f normal = r.normal();
+  const Eigen::Vector2f eye_m = r.right_up_m(eye.position);
+  const auto light_at = [&](const Eigen::Vector2f& right_up_m) -> Colour {
+    if (is_emitting(r.material)) return Colour::Constant(r.material.radiance);
+    return run.surface() < num_at_rest ? light_.at(run.surface(), right_up_m)
+                                       : moving.light_at(run.surface() - num_at_rest, right_up_m);
+  };
+  auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
+  auto* const depth_m = view.depth_m.ptr<float>(run.y) + run.first_x;
+  auto* const incidence = view.incidence.ptr<float>(run.y) + run.first_x;
+  for (std::size_t i = 0; i < run.hits.size(); ++i) {
+    const Eigen::Vector3f& direction = run.directions[i];
+    const float reach = run.hits[i].reach;
+    const Eigen::Vector2f right_up_m =
+        eye_m + reach * Eigen::Vector2f(r.right.dot(direction), r.up.dot(direction));
+    incidence[i] = std::abs(direction.dot(normal)) / direction.norm();
+    depth_m[i] = reach;
+    const float stretch = std::min(1.0F / std::sqrt(incidence[i]), kMaxStretch);
+    const Colour shade =
+        reflectance(r, {right_up_m.x(), right_up_m.y(), reach * pixel_rad_ * stretch}) *
+        light_at(right_up_m);
+    radiance[i] = {shade[0], shade[1], shade[2]};
+  }
+}
+
+// What things that move keep from the surfaces close to them changes slowly over the picture: it is
+// computed for some pixels and interpolated.
+void Renderer::darken_run(const Eye& eye, const MovingThings& moving, const Run& run,
+                          View& view) const {
+  constexpr std::size_t kStep = 4;
+  const Eigen::Vector3f normal = rectangle(moving, run.surface()).normal();
+  auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
+  const std::size_t last = run.hits.size() - 1;
+  const auto share_at = [&](std::size_t i) {
+    return moving.share_left({eye.position + run.hits[i].reach * run.directions[i], normal});
+  };
+  float share = share_at(0);
+  for (std::size_t first = 0; first <= last; first += kStep) {
+    const std::size_t next = std::min(first + kStep, last);
+    const float next_share = share_at(next);
+    for (std::size_t i = first; i < first + kStep && i <= last; ++i) {
+      const float ratio = static_cast<float>(i - first) / static_cast<float>(kStep);
+      radiance[i] *= share + ratio * (next_share - share);
     }
+    share = next_share;
+  }
+}
+
+void Renderer::render_row(const Eye& eye, MovingThings& moving, int y, View& view) const {
+  const auto num_pixels = static_cast<std::size_t>(width_px_);
+  const Eigen::Vector3f* const in_camera =
+      &rays_in_camera_[static_cast<std::size_t>(y * (width_px_ + 1))];
+  std::vector<Eigen::Vector3f> directions(num_pixels);
+  for (std::size_t x = 0; x < num_pixels; ++x) {
+    directions[x] = eye.world_from_camera * in_camera[x];
+  }
+  std::vector<Hit> hits(num_pixels);
+  rays_.first_hits(eye.position, directions, hits);
+  const int num_at_rest = static_cast<int>(building_.rectangles.size());
+  moving.meet(eye.position, directions, num_at_rest, hits);
+  int* const surface = view.surface.ptr<int>(y);
+  for (std::size_t first = 0, end = 0; first < num_pixels; first = end) {
+    const int seen = hits[first].rectangle;
+    for (end = first; end < num_pixels && hits[end].rectangle == seen; ++end) surface[end] = seen;
+    if (seen < 0) continue;
+    const Run run{.y = y,
+                  .first_x = static_cast<int>(first),
+                  .directions = std::span(directions).subspan(first, end - first),
+                  .hits = std::span(hits).subspan(first, end - first)};
+    shade_run(eye, moving, run, view);
+    if (!moving.is_empty() && seen < num_at_rest) darken_run(eye, moving, run, view);
   }
 }
 
 // The colour of a pixel that several surfaces share: each gives that of the nearest pixel around
 // that shows it.
-cv::Vec3f Renderer::smooth_pixel(const Eye& eye, const View& view, const cv::Point& pixel) const {
+cv::Vec3f Renderer::smooth_pixel(const Eye& eye, const MovingThings& moving, const View& view,
+                                 const cv::Point& pixel) const {
   // a turned square, so that upright and level edges take five steps rather than three
   constexpr float kOffsets_px[4][2] = {
       {0.375F, 0.125F}, {-0.125F, 0.375F}, {-0.375F, -0.125F}, {0.125F, -0.375F}};
-  const cv::Point neighbours[5] = {pixel, pixel + cv::Point(1, 0), pixel - cv::Point(1, 0),
-                                   pixel + cv::Point(0, 1), pixel - cv::Point(0, 1)};
+  struct Neighbour {
+    int surface = -1;
+    cv::Point at;
+  };
+  std::array<Neighbour, 5> neighbours;  // of different surfaces, this pixel's first
+  std::size_t num_neighbours = 0;
+  for (const auto& step :
+       {cv::Point(0, 0), cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
+    const int surface = view.surface.at<int>(pixel + step);
+    const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(num_neighbours);
+    const bool is_new = std::none_of(neighbours.begin(), end,
+                                     [&](const Neighbour& n) { return n.surface == surface; });
+    if (surface >= 0 && is_new) neighbours[num_neighbours++] = {surface, pixel + step};
+  }
   cv::Vec3f sum(0.0F, 0.0F, 0.0F);
   for (const auto& offset_px : kOffsets_px) {
     const Ray through{eye.position,
@@ -110,12 +178,10 @@ cv::Vec3f Renderer::smooth_pixel(const Eye& eye, const View& view, const cv::Poi
                                                   static_cast<float>(pixel.y) + offset_px[1])};
     cv::Point nearest = pixel;
     float nearest_reach = std::numeric_limits<float>::infinity();
-    for (const auto& neighbour : neighbours) {
-      const int surface = view.surface.at<int>(neighbour);
-      if (surface < 0) continue;
-      const auto reach = reach_of(through, building_.rectangles[static_cast<std::size_t>(surface)]);
+    for (std::size_t i = 0; i < num_neighbours; ++i) {
+      const auto reach = reach_of(through, rectangle(moving, neighbours[i].surface));
       if (!reach || *reach >= nearest_reach) continue;
-      nearest = neighbour;
+      nearest = neighbours[i].at;
       nearest_reach = *reach;
     }
     const cv::Vec3f& colour = view.radiance.at<cv::Vec3f>(nearest);
@@ -124,28 +190,57 @@ cv::Vec3f Renderer::smooth_pixel(const Eye& eye, const View& view, const cv::Poi
   return 0.25F * sum;
 }
 
-void Renderer::smooth_edges(const Eye& eye, View& view) const {
-  cv::Mat smooth = view.radiance.clone();
+void Renderer::smooth_edges(const Eye& eye, const MovingThings& moving, View& view) const {
+  std::vector<std::pair<cv::Point, cv::Vec3f>> smoothed;
   for (int y = 1; y + 1 < height_px_; ++y) {
     for (int x = 1; x + 1 < width_px_; ++x) {
       const cv::Point pixel(x, y);
       if (!is_edge(view.surface, pixel)) continue;
-      smooth.at<cv::Vec3f>(pixel) = smooth_pixel(eye, view, pixel);
+      smoothed.emplace_back(pixel, smooth_pixel(eye, moving, view, pixel));
     }
   }
-  view.radiance = smooth;
+  for (const auto& [pixel, colour] : smoothed) view.radiance.at<cv::Vec3f>(pixel) = colour;
 }
 
-View Renderer::render(const core::Rigid3& world_from_camera) const {
+View Renderer::render(const core::Rigid3& world_from_camera,
+                      const std::vector<Rectangle>& moving_rectangles) const {
   const Eye eye{world_from_camera.rotation.toRotationMatrix().cast<float>(),
                 world_from_camera.translation.cast<float>()};
-  View view{.radiance = cv::Mat(height_px_, width_px_, CV_32FC3),
-            .depth_m = cv::Mat(height_px_, width_px_, CV_32F),
-            .incidence = cv::Mat(height_px_, width_px_, CV_32F),
+  MovingThings moving(moving_rectangles, light_);
+  View view{.radiance = cv::Mat::zeros(height_px_, width_px_, CV_32FC3),
+            .depth_m = cv::Mat::zeros(height_px_, width_px_, CV_32F),
+            .incidence = cv::Mat::zeros(height_px_, width_px_, CV_32F),
             .surface = cv::Mat(height_px_, width_px_, CV_32S)};
-  render_pixels(eye, view);
-  smooth_edges(eye, view);
+  for (int y = 0; y < height_px_; ++y) render_row(eye, moving, y, view);
+  smooth_edges(eye, moving, view);
   return view;
+}
+
+float Renderer::mean_radiance(const core::Rigid3& world_from_camera) const {
+  constexpr int kColumns = 16;
+  constexpr int kRows = 12;
+  const Eigen::Matrix3f rotation = world_from_camera.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f position = world_from_camera.translation.cast<float>();
+  std::vector<Eigen::Vector3f> directions;
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      directions.emplace_back(rotation *
+                              ray((static_cast<float>(column) + 0.5F) / kColumns * width_px_,
+                                  (static_cast<float>(row) + 0.5F) / kRows * height_px_));
+    }
+  }
+  std::vector<Hit> hits(directions.size());
+  rays_.first_hits(position, directions, hits);
+  Colour sum = Colour::Zero();
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].rectangle < 0) continue;
+    const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hits[i].rectangle)];
+    const Eigen::Vector2f right_up_m = r.right_up_m(position + hits[i].reach * directions[i]);
+    const Colour light = is_emitting(r.material) ? Colour::Constant(r.material.radiance)
+                                                 : light_.at(hits[i].rectangle, right_up_m);
+    sum += (mean_reflectance(r.material) * light).min(kBrightest);
+  }
+  return sum.mean() / static_cast<float>(hits.size());
 }
 
 }  // namespace samewhere::twin

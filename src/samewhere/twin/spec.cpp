@@ -1,3 +1,4 @@
+#include <array>
 #include <charconv>
 #include <vector>
 
@@ -10,7 +11,23 @@ namespace samewhere::twin {
 namespace {
 
 constexpr std::string_view kScheme = "twin:";
-constexpr std::string_view kPresets[] = {"office-loop"};
+constexpr std::array<Preset, 8> kPresets = {{
+    {"office-loop", "one lap and a quarter around a block of offices; easy"},
+    {"twin-corridors", "two identical parallel corridors, then the first once more"},
+    {"hotel", "five floors alike around a stair, the top floor twice"},
+    {"no-return", "forty identical doors and never a revisit"},
+    {"warehouse", "a robot through four aisles of racks and half of the first again"},
+    {"mirror", "a building symmetric about its core: west wing, east wing, west wing"},
+    {"long-haul", "thirty minutes through three floors of wings alike"},
+    {"second-visit", "the same building again in another light, with things moved"},
+}};
+
+struct SensorsName {
+  std::string_view name;
+  Sensors sensors;
+};
+constexpr std::array<SensorsName, 3> kSensors = {
+    {{"rgbd", Sensors::kRgbd}, {"stereo", Sensors::kStereo}, {"mono", Sensors::kMono}}};
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -41,26 +58,45 @@ T number(const Setting& setting, T min, T max, std::string_view expected) {
       fmt::format("{}: {} = {} is not {}", setting.spec, setting.key, setting.value, expected));
 }
 
+Sensors sensors_of(const Setting& setting) {
+  for (const auto& [name, sensors] : kSensors) {
+    if (setting.value == name) return sensors;
+  }
+  throw core::InputError(fmt::format("{}: {} = {} is not rgbd, stereo or mono", setting.spec,
+                                     setting.key, setting.value));
+}
+
 void apply(const Setting& setting, Spec& spec) {
   if (setting.key == "seed") {
     spec.seed = number<std::uint64_t>(setting, 0, ~std::uint64_t{0}, "a whole number >= 0");
   } else if (setting.key == "similarity") {
     spec.similarity = number(setting, 0.0, 1.0, "a number in [0, 1]");
+  } else if (setting.key == "speed") {
+    spec.speed = number(setting, 0.5, 2.0, "a number in [0.5, 2]");
+  } else if (setting.key == "people") {
+    spec.people = number(setting, 0, 30, "a whole number in [0, 30]");
+  } else if (setting.key == "camera") {
+    spec.sensors = sensors_of(setting);
   } else {
-    throw core::InputError(fmt::format("{}: unknown key {}; expected one of: seed, similarity",
-                                       setting.spec, setting.key));
+    throw core::InputError(
+        fmt::format("{}: unknown key {}; expected one of: seed, similarity, speed, people, camera",
+                    setting.spec, setting.key));
   }
 }
 
 void check_preset(const std::string& text, std::string_view preset) {
+  std::vector<std::string_view> names;
   for (const auto& known : kPresets) {
-    if (preset == known) return;
+    if (preset == known.name) return;
+    names.push_back(known.name);
   }
   throw core::InputError(fmt::format("{}: unknown preset {}; expected one of: {}", text, preset,
-                                     fmt::join(kPresets, ", ")));
+                                     fmt::join(names, ", ")));
 }
 
 }  // namespace
+
+std::span<const Preset> list_presets() { return kPresets; }
 
 bool is_twin_spec(std::string_view text) { return text.starts_with(kScheme); }
 
@@ -88,6 +124,15 @@ Spec parse_spec(const std::string& text) {
     apply(setting, spec);
   }
   return spec;
+}
+
+std::string canonical_text(const Spec& spec) {
+  std::string_view camera;
+  for (const auto& [name, sensors] : kSensors) {
+    if (spec.sensors == sensors) camera = name;
+  }
+  return fmt::format("{}{}?seed={}&similarity={}&speed={}&people={}&camera={}", kScheme,
+                     spec.preset, spec.seed, spec.similarity, spec.speed, spec.people, camera);
 }
 
 }  // namespace samewhere::twin

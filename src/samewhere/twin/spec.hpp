@@ -1,22 +1,40 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace samewhere::twin {
 
-// Which building, read from "twin:PRESET?seed=3&similarity=0.9".
+// What the camera measures beside the picture.
+enum class Sensors : std::uint8_t { kRgbd, kStereo, kMono };
+
+// Which building and how it is walked, read from "twin:PRESET?seed=3&similarity=0.9".
 struct Spec {
   std::string preset;
-  std::uint64_t seed = 1;   // textures, decoration and the wobble of the walk
-  double similarity = 0.8;  // 0: every door has its own looks, 1: only wear and numbers differ
+  std::uint64_t seed = 1;   // looks, decoration and the wobble of the walk
+  double similarity = 0.8;  // 0: every place has its own looks, 1: only wear and numbers differ
+  double speed = 1.0;       // times the usual one of the preset
+  int people = 0;           // walking about
+  Sensors sensors = Sensors::kRgbd;  // key `camera`
 };
+
+struct Preset {
+  std::string_view name;
+  std::string_view what;  // one line
+};
+
+// In the order in which they are shown.
+std::span<const Preset> list_presets();
 
 bool is_twin_spec(std::string_view text);
 
 // Throws InputError naming the part that is wrong and what was expected: unknown preset or key, a
 // key given twice, a value outside its range.
 Spec parse_spec(const std::string& text);
+
+// The spec with every key in a fixed order: equal for equal specs, and parse_spec reads it back.
+std::string canonical_text(const Spec& spec);
 
 }  // namespace samewhere::twin

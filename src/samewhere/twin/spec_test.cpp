@@ -36,6 +36,30 @@ TEST(TwinSpec, HasDefaultsForWhatIsNotSaid) {
   EXPECT_DOUBLE_EQ(spec.similarity, 0.8);
 }
 
+TEST(TwinSpec, ReadsHowTheBuildingIsWalked) {
+  const Spec spec = parse_spec("twin:hotel?speed=0.5&people=7&camera=stereo");
+  EXPECT_EQ(spec.preset, "hotel");
+  EXPECT_DOUBLE_EQ(spec.speed, 0.5);
+  EXPECT_EQ(spec.people, 7);
+  EXPECT_EQ(spec.sensors, Sensors::kStereo);
+}
+
+TEST(TwinSpec, EveryListedPresetCanBeAskedFor) {
+  EXPECT_EQ(list_presets().size(), 8U);
+  for (const auto& preset : list_presets()) {
+    EXPECT_EQ(parse_spec("twin:" + std::string(preset.name)).preset, preset.name);
+    EXPECT_FALSE(preset.what.empty()) << preset.name;
+  }
+}
+
+TEST(TwinSpec, EqualSpecsHaveOneCanonicalText) {
+  const std::string text = canonical_text(parse_spec("twin:mirror?speed=1.50&seed=007"));
+  EXPECT_EQ(text, "twin:mirror?seed=7&similarity=0.8&speed=1.5&people=0&camera=rgbd");
+  EXPECT_EQ(canonical_text(parse_spec("twin:mirror?seed=7&speed=1.5&people=0")), text);
+  EXPECT_EQ(canonical_text(parse_spec(text)), text);
+  EXPECT_NE(canonical_text(parse_spec("twin:mirror?seed=7&speed=1.5&camera=mono")), text);
+}
+
 struct BadSpec {
   std::string text;
   std::string complaint;  // what the message must name
@@ -50,9 +74,10 @@ TEST_P(TwinSpecRefusal, NamesWhatIsWrongAndWhatWasExpected) {
 INSTANTIATE_TEST_SUITE_P(
     All, TwinSpecRefusal,
     testing::Values(
-        BadSpec{"twin:", "unknown preset ; expected one of: office-loop"},
+        BadSpec{"twin:", "unknown preset ; expected one of: office-loop, twin"},
         BadSpec{"twin:office-lop", "unknown preset office-lop; expected one of: office-loop"},
-        BadSpec{"twin:office-loop?sed=3", "unknown key sed; expected one of: seed, similarity"},
+        BadSpec{"twin:office-loop?sed=3",
+                "unknown key sed; expected one of: seed, similarity, speed"},
         BadSpec{"twin:office-loop?seed", "expected key=value, found \"seed\""},
         BadSpec{"twin:office-loop?", "expected key=value, found \"\""},
         BadSpec{"twin:office-loop?seed=", "seed =  is not a whole number"},
@@ -61,6 +86,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"twin:office-loop?seed=99999999999999999999", "is not a whole number"},
         BadSpec{"twin:office-loop?similarity=1.1", "similarity = 1.1 is not a number in [0, 1]"},
         BadSpec{"twin:office-loop?similarity=nan", "similarity = nan is not a number in [0, 1]"},
+        BadSpec{"twin:office-loop?speed=0.49", "speed = 0.49 is not a number in [0.5, 2]"},
+        BadSpec{"twin:office-loop?speed=2.1", "speed = 2.1 is not a number in [0.5, 2]"},
+        BadSpec{"twin:office-loop?people=31", "people = 31 is not a whole number in [0, 30]"},
+        BadSpec{"twin:office-loop?people=-1", "people = -1 is not a whole number in [0, 30]"},
+        BadSpec{"twin:office-loop?camera=rgb", "camera = rgb is not rgbd, stereo or mono"},
         BadSpec{"twin:office-loop?seed=1&seed=2", "seed given twice"},
         BadSpec{"office-loop", "expected twin:PRESET"}));
 

@@ -66,11 +66,10 @@ Agreement compare(const core::Frame& from, const core::Frame& to,
   return agreement;
 }
 
-TEST(Twin, TheSameSeedGivesTheSameBytesAndAnotherDoesNot) {
-  const Config config{.num_frames = 2};
-  const auto first = render("twin:office-loop?seed=3", config);
-  const auto again = render("twin:office-loop?seed=3", config);
-  const auto other = render("twin:office-loop?seed=4", config);
+TEST(Twin, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreadsAndAnotherSeedDoesNot) {
+  const auto first = render("twin:office-loop?seed=3", {.num_frames = 2, .num_workers = 1});
+  const auto again = render("twin:office-loop?seed=3", {.num_frames = 2, .num_workers = 3});
+  const auto other = render("twin:office-loop?seed=4", {.num_frames = 2});
   ASSERT_EQ(first.size(), 2U);
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_TRUE(is_same(first[i].images[0], again[i].images[0]));

@@ -1,0 +1,259 @@
+// Does a rendered building look like a photo to a feature matcher? For each source: corners, tones,
+// noise and spectrum of its pictures, and how the ORB matches between two views fall off with
+// baseline and angle; rendered sources beside the nearest recorded one.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "orb_matches.hpp"
+#include "picture_statistics.hpp"
+#include "program.hpp"
+#include "view_pairs.hpp"
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/progress.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
+#include <samewhere/features/orb.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/twin/spec.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+constexpr int kOrbFeatures = 1000;
+constexpr std::size_t kMinPairs = 10;  // fewer say nothing
+constexpr double kMaxFactor = 2.0;
+
+struct Options {
+  std::vector<std::string> sources;
+  int width_px = 0;
+  int num_pictures = 100;
+  int num_pairs = 60;
+  std::string csv_file;
+};
+
+// A figure of one source; nothing where there is too little to say it.
+struct Figure {
+  std::string name;
+  std::optional<double> value;
+};
+
+struct SourceFigures {
+  std::string name;
+  bool is_twin = false;
+  std::vector<Figure> figures;  // the same names in the same order for every source
+};
+
+std::unique_ptr<core::Source> open(const std::string& name) {
+  pipeline::Config config = pipeline::profile("default");
+  config.source = name;
+  config.twin.ideal_depth = true;  // the range of a sensor would shorten the median depth
+  return pipeline::open_source(config);
+}
+
+int smallest_width_px(const std::vector<std::string>& sources) {
+  int width_px = std::numeric_limits<int>::max();
+  for (const std::string& name : sources) {
+    const auto first = open(name)->next();
+    if (!first) throw core::InputError(name + ": holds no frame");
+    width_px = std::min(width_px, first->images.front().cols);
+  }
+  return width_px;
+}
+
+cv::Mat at_width(const cv::Mat& image, int width_px) {
+  if (image.cols == width_px) return image;
+  const int height_px =
+      static_cast<int>(std::lround(static_cast<double>(image.rows) * width_px / image.cols));
+  cv::Mat resized;
+  cv::resize(image, resized, cv::Size(width_px, height_px), 0.0, 0.0, cv::INTER_AREA);
+  return resized;
+}
+
+// What is kept of a source after its frames went by.
+struct Views {
+  std::vector<PictureStatistics> pictures;
+  std::vector<ViewGeometry> geometry;
+  std::vector<OrbFeatures> orb;  // of the same frames as geometry
+};
+
+void add_view(const core::Frame& frame, const core::Trajectory& trajectory, const cv::Mat& picture,
+              Views& views) {
+  const auto world_from_camera = evaluate::truth_at(trajectory, frame.stamp_s);
+  if (!world_from_camera || !frame.depth_m || !frame.rig || !frame.rig->is_calibrated()) return;
+  views.geometry.push_back(view_geometry(frame, *world_from_camera));
+  views.orb.push_back(extract_orb(features::as_grey(picture), kOrbFeatures));
+}
+
+Views look_at(const std::string& name, const Options& options) {
+  const auto source = open(name);
+  const core::Trajectory trajectory = source->truth().trajectory;
+  const int num_frames = source->info().num_frames;
+  const int picture_step = std::max(1, num_frames / options.num_pictures);
+  core::Progress progress("looking at " + name, num_frames);
+  Views views;
+  int num_seen = 0;
+  while (const auto frame = source->next()) {
+    const cv::Mat picture = at_width(frame->images.front(), options.width_px);
+    if (num_seen % picture_step == 0) views.pictures.push_back(picture_statistics(picture));
+    add_view(*frame, trajectory, picture, views);
+    progress.update(++num_seen);
+  }
+  return views;
+}
+
+std::optional<double> quantile(std::vector<double> values, double ratio) {
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(ratio * static_cast<double>(values.size() - 1))];
+}
+
+void add_picture_figures(const Views& views, std::vector<Figure>& figures) {
+  for (const PictureFigure& figure : kPictureFigures) {
+    std::vector<double> values;
+    for (const PictureStatistics& picture : views.pictures) {
+      values.push_back(picture.*figure.value);
+    }
+    figures.push_back({std::string(figure.name), quantile(values, 0.5)});
+    if (figure.value != &PictureStatistics::num_fast_corners) continue;
+    figures.push_back({"FAST corners, 10th percentile", quantile(values, 0.1)});
+    figures.push_back({"FAST corners, 90th percentile", quantile(values, 0.9)});
+  }
+}
+
+struct ClassFigures {
+  std::optional<double> inliers;
+  std::optional<double> inlier_ratio;
+  std::optional<double> overlap;
+};
+
+ClassFigures match(const std::vector<ViewPair>& pairs, const Views& views) {
+  if (pairs.size() < kMinPairs) return {};
+  std::vector<double> inliers;
+  std::vector<double> ratios;
+  std::vector<double> overlaps;
+  for (const ViewPair& pair : pairs) {
+    const OrbFeatures& first = views.orb[static_cast<std::size_t>(pair.first)];
+    const OrbFeatures& second = views.orb[static_cast<std::size_t>(pair.second)];
+    inliers.push_back(count_inliers(first, second));
+    ratios.push_back(inliers.back() / std::max(1, first.size()));
+    overlaps.push_back(pair.overlap);
+  }
+  return {quantile(inliers, 0.5), quantile(ratios, 0.5), quantile(overlaps, 0.5)};
+}
+
+void add_match_figures(const std::string& name, const Views& views, int num_pairs,
+                       std::vector<Figure>& figures) {
+  const auto pairs = draw_pairs(views.geometry, num_pairs);
+  std::vector<ClassFigures> classes;
+  core::Progress progress("matching pairs of " + name, kNumClasses);
+  for (const auto& pairs_of_class : pairs) {
+    classes.push_back(match(pairs_of_class, views));
+    progress.update(static_cast<int>(classes.size()));
+  }
+  const auto add = [&](const std::string& what, std::optional<double> ClassFigures::*value) {
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      figures.push_back({what + class_name(static_cast<int>(i)), classes[i].*value});
+    }
+  };
+  add("inliers, ", &ClassFigures::inliers);
+  add("inliers / features, ", &ClassFigures::inlier_ratio);
+  add("overlap, ", &ClassFigures::overlap);
+}
+
+SourceFigures measure(const std::string& name, const Options& options) {
+  const Views views = look_at(name, options);
+  SourceFigures source{.name = name, .is_twin = twin::is_twin_spec(name), .figures = {}};
+  add_picture_figures(views, source.figures);
+  add_match_figures(name, views, options.num_pairs, source.figures);
+  return source;
+}
+
+// The value over that of the recorded source nearest to it; nothing where there is none.
+std::optional<double> ratio_to_nearest(double value, std::size_t row,
+                                       const std::vector<SourceFigures>& sources) {
+  const auto log_of = [](double x) { return std::log(std::max(x, 1e-9)); };
+  std::optional<double> nearest;
+  for (const SourceFigures& source : sources) {
+    const std::optional<double>& real = source.figures[row].value;
+    if (source.is_twin || !real) continue;
+    const double log_ratio = log_of(value) - log_of(*real);
+    if (!nearest || std::abs(log_ratio) < std::abs(*nearest)) nearest = log_ratio;
+  }
+  return nearest ? std::optional(std::exp(*nearest)) : std::nullopt;
+}
+
+std::string as_cell(const std::optional<double>& value) {
+  if (!value) return "-";
+  return std::abs(*value) >= 100.0 ? fmt::format("{:.0f}", *value) : fmt::format("{:.3g}", *value);
+}
+
+// "1.3", or "3.1 !" outside the factor.
+std::string ratio_cell(const std::optional<double>& ratio) {
+  if (!ratio) return "-";
+  if (*ratio > 1000.0 || *ratio < 0.001) return *ratio > 1.0 ? "> 1000 !" : "< 0.001 !";
+  const bool is_within = *ratio <= kMaxFactor && *ratio >= 1.0 / kMaxFactor;
+  return fmt::format("{:.2f}{}", *ratio, is_within ? "" : " !");
+}
+
+Table comparison(const std::vector<SourceFigures>& sources) {
+  Table table{.header = {"median of"}, .rows = {}};
+  for (const SourceFigures& source : sources) {
+    table.header.push_back(source.name);
+    if (source.is_twin) table.header.emplace_back("to nearest real");
+  }
+  for (std::size_t row = 0; row < sources.front().figures.size(); ++row) {
+    std::vector<std::string> cells = {sources.front().figures[row].name};
+    for (const SourceFigures& source : sources) {
+      const std::optional<double>& value = source.figures[row].value;
+      cells.push_back(as_cell(value));
+      if (!source.is_twin) continue;
+      cells.push_back(ratio_cell(value ? ratio_to_nearest(*value, row, sources) : std::nullopt));
+    }
+    table.rows.push_back(cells);
+  }
+  return table;
+}
+
+void measure_all(Options options) {
+  if (options.width_px == 0) options.width_px = smallest_width_px(options.sources);
+  fmt::print("pictures {} px wide\n", options.width_px);
+  std::vector<SourceFigures> sources;
+  for (const std::string& name : options.sources) sources.push_back(measure(name, options));
+  publish(comparison(sources), options.csv_file);
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  using namespace samewhere::bench;
+  Options options;
+  CLI::App app(
+      "How the pictures of sources look to a feature matcher: corners, tones, noise, spectrum, "
+      "and\n"
+      "the inliers of 1000 ORB features (ratio 0.8) under one fundamental matrix, by baseline "
+      "over\n"
+      "median depth and by angle between the views. '!' marks what is further than a factor of "
+      "two\n"
+      "from every recorded source.",
+      "appearance");
+  app.add_option("SOURCE", options.sources, "recordings with depth and poses, or twin:PRESET")
+      ->required();
+  app.add_option("--width", options.width_px,
+                 "width in pixels that all pictures are brought to; 0: that of the smallest")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_option("--pictures", options.num_pictures, "so many frames for the statistics")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--pairs", options.num_pairs, "so many pairs of views of each class")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--csv", options.csv_file, "write the table to this file, too");
+  return run_program(app, argc, argv, [&options] { measure_all(options); });
+}

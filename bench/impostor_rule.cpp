@@ -1,0 +1,149 @@
+#include "impostor_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/random.hpp>
+#include <samewhere/core/text_file.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+constexpr double kOwnMoment_s = 10.0;
+constexpr std::uint64_t kPermutationSeed = 0;
+
+std::vector<int> every(int step, int num_frames) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < num_frames; frame += step) frames.push_back(frame);
+  return frames;
+}
+
+using Pairs = std::set<std::pair<int, int>>;  // either frame first
+
+// The impostors that the truth names, by either frame; empty where it has no such list. A template
+// because the list is looked for, not relied on.
+template <class TruthType>
+Pairs listed_impostors(const TruthType& truth) {
+  Pairs pairs;
+  if constexpr (requires { truth.impostors; }) {
+    for (const auto& pair : truth.impostors) {
+      pairs.emplace(pair.query, pair.match);
+      pairs.emplace(pair.match, pair.query);
+    }
+  }
+  return pairs;
+}
+
+ImpostorRule rule_of_places(const KnownFrames& frames, int query_step) {
+  const auto is_elsewhere = [places = *frames.truth.places](int query, int match) {
+    return places.at(query, match) == core::PlaceTruth::kDifferent &&
+           places.at(match, query) == core::PlaceTruth::kDifferent;
+  };
+  const auto offer = [is_elsewhere, stamps_s = frames.stamps_s](int query, int match) {
+    const double apart_s = std::abs(stamps_s[static_cast<std::size_t>(query)] -
+                                    stamps_s[static_cast<std::size_t>(match)]);
+    return apart_s > kOwnMoment_s && is_elsewhere(query, match) ? Offer::kImpostor
+                                                                : Offer::kTakenOut;
+  };
+  return {"other places", every(query_step, static_cast<int>(frames.names.size())), offer};
+}
+
+ImpostorRule rule_of_list(const Pairs& pairs, int query_step, int num_frames) {
+  ImpostorRule rule{.name = "listed impostors", .queries = {}, .offer = nullptr};
+  for (const int query : every(query_step, num_frames)) {
+    const auto first = pairs.lower_bound({query, 0});
+    if (first != pairs.end() && first->first == query) rule.queries.push_back(query);
+  }
+  rule.offer = [pairs](int query, int match) {
+    return pairs.contains({query, match}) ? Offer::kImpostor : Offer::kTakenOut;
+  };
+  return rule;
+}
+
+struct TowerImage {
+  std::string floor;
+  std::string clip;
+  bool is_gallery = false;
+};
+
+// Image name -> whether the data set calls it gallery.
+std::map<std::string, bool> read_splits(const std::filesystem::path& csv) {
+  std::map<std::string, bool> is_gallery;
+  for (const core::TextLine& line : core::read_text_lines(csv)) {
+    const std::string& text = line.words.front();
+    const std::size_t first = text.find(',');
+    const std::size_t second = text.find(',', first + 1);
+    const std::size_t third = text.find(',', second + 1);
+    if (first == std::string::npos || second == std::string::npos || third == std::string::npos) {
+      throw core::InputError(
+          fmt::format("{}: '{}', expected image,floor,split,area", line.place, text));
+    }
+    is_gallery[text.substr(0, first)] = text.substr(second + 1, third - second - 1) == "gallery";
+  }
+  return is_gallery;
+}
+
+std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
+  const std::map<std::string, bool> is_gallery = read_splits(folder / "dataset.csv");
+  std::vector<TowerImage> images;
+  for (const core::TextLine& line : core::read_text_lines(folder / "walk.txt")) {
+    const auto split = line.words.size() == 3 ? is_gallery.find(line.words[0]) : is_gallery.end();
+    if (split == is_gallery.end()) {
+      throw core::InputError(
+          fmt::format("{}: expected an image of dataset.csv, its floor and its clip", line.place));
+    }
+    images.push_back({line.words[1], line.words[2], split->second});
+  }
+  return images;
+}
+
+}  // namespace
+
+std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_step) {
+  std::vector<ImpostorRule> rules;
+  if (frames.truth.places) rules.push_back(rule_of_places(frames, query_step));
+  const Pairs listed = listed_impostors(frames.truth);
+  if (!listed.empty()) {
+    rules.push_back(rule_of_list(listed, query_step, static_cast<int>(frames.names.size())));
+  }
+  if (rules.empty()) {
+    throw core::InputError("the truth says nothing about places; expected a place matrix");
+  }
+  return rules;
+}
+
+bool is_tower(const std::filesystem::path& source) {
+  return std::filesystem::exists(source / "dataset.csv") &&
+         std::filesystem::exists(source / "walk.txt");
+}
+
+ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {
+  const auto images = std::make_shared<const std::vector<TowerImage>>(read_tower(folder));
+  std::vector<int> all_queries;
+  for (std::size_t i = 0; i < images->size(); ++i) {
+    if (!(*images)[i].is_gallery) all_queries.push_back(static_cast<int>(i));
+  }
+  const int num_all = static_cast<int>(all_queries.size());
+  ImpostorRule rule{.name = "clip-out", .queries = {}, .offer = nullptr};
+  core::Random random(kPermutationSeed);
+  for (const int drawn : random.distinct_indices(std::min(num_queries, num_all), num_all)) {
+    rule.queries.push_back(all_queries[static_cast<std::size_t>(drawn)]);
+  }
+  std::sort(rule.queries.begin(), rule.queries.end());
+  rule.offer = [images](int query, int match) {
+    const TowerImage& own = (*images)[static_cast<std::size_t>(query)];
+    const TowerImage& other = (*images)[static_cast<std::size_t>(match)];
+    if (!other.is_gallery || other.clip == own.clip) return Offer::kTakenOut;
+    return other.floor == own.floor ? Offer::kRight : Offer::kImpostor;
+  };
+  return rule;
+}
+
+}  // namespace samewhere::bench

@@ -1,0 +1,46 @@
+#include "program.hpp"
+
+#include <cstdio>
+#include <exception>
+
+#include <opencv2/core/utility.hpp>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kBrokenPromise = 3;
+
+int complain(const CLI::App& app, const std::string& message, int exit_code) {
+  std::fputs((app.get_name() + ": " + message + "\n").c_str(), stderr);
+  return exit_code;
+}
+
+}  // namespace
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<void()>& work) {
+  cv::setNumThreads(1);
+  try {
+    app.parse(argc, argv);
+    work();
+  } catch (const CLI::ParseError& error) {
+    // help is no error
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return complain(app, std::string(error.what()) + " (see --help)", kBadInput);
+  } catch (const core::InputError& error) {
+    return complain(app, error.what(), kBadInput);
+  } catch (const std::exception& error) {
+    return complain(app, std::string("this is a bug of ours: ") + error.what(), kBrokenPromise);
+  }
+  return 0;
+}
+
+void publish(const Table& table, const std::string& csv_file) {
+  std::fputs(as_text(table).c_str(), stdout);
+  if (!csv_file.empty()) core::write_file(csv_file, as_csv(table));
+}
+
+}  // namespace samewhere::bench

@@ -1,0 +1,313 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/input/csv_file.hpp>
+#include <samewhere/input/test_recording.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kLeftSensor =
+    "# a camera\n"
+    "sensor_type: camera\n"
+    "T_BS:\n"
+    "  cols: 4\n"
+    "  rows: 4\n"
+    "  data: [0.0, -1.0, 0.0, -0.02,\n"
+    "         1.0, 0.0, 0.0, -0.06,\n"
+    "         0.0, 0.0, 1.0, 0.01,\n"
+    "         0.0, 0.0, 0.0, 1.0]\n"
+    "rate_hz: 20\n"
+    "resolution: [32, 24]\n"
+    "camera_model: pinhole\n"
+    "intrinsics: [30.5, 31.0, 15.5, 11.25] #fu, fv, cu, cv\n"
+    "distortion_model: radial-tangential\n"
+    "distortion_coefficients: [-0.28, 0.07, 1.9e-04, 1.76e-05]\n";
+
+std::string replaced(std::string text, const std::string& old, const std::string& now) {
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), now);
+}
+
+// Two cameras, an inertial unit and truth, as in a EuRoC recording; three frames.
+class Euroc : public Open {
+ protected:
+  Euroc() {
+    for (const char* name : kNames) {
+      write_grey(fmt::format("mav0/cam0/data/{}", name), 50);
+      write_grey(fmt::format("mav0/cam1/data/{}", name), 150);
+    }
+    const std::string list = fmt::format(
+        "#timestamp [ns],filename\r\n1403636579763555584,{}\r\n"
+        "1403636579813555456,{}\r\n1403636579863555584,{}\r\n",
+        kNames[0], kNames[1], kNames[2]);
+    folder_.write("mav0/cam0/data.csv", list);
+    folder_.write("mav0/cam1/data.csv", list);
+    folder_.write("mav0/cam0/sensor.yaml", kLeftSensor);
+    folder_.write("mav0/cam1/sensor.yaml",
+                  "%YAML:1.0\n---\n" + replaced(kLeftSensor, "-0.02,", "0.09,"));
+    folder_.write("mav0/imu0/sensor.yaml",
+                  "%YAML:1.0\n"
+                  "T_BS:\n  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1]\n"
+                  "gyroscope_noise_density: 1.6968e-04\naccelerometer_noise_density: 2.0e-3\n");
+    write_imu_samples();
+    folder_.write("mav0/state_groundtruth_estimate0/data.csv",
+                  "#timestamp, p_RS_R_x [m], ...\n"
+                  "1403636579758555392,4.5,-1.75,0.75,0.5,-0.5,0.5,-0.5,0,0,0,0,0,0,0,0,0\n"
+                  "1403636579763555584,1,2,3,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  }
+
+  void write_grey(const std::string& name, int grey) const {
+    folder_.write_png(name, cv::Mat(24, 32, CV_8UC1, cv::Scalar(grey)));
+  }
+
+  // The sample after the last frame belongs to none; two coincide with frames.
+  void write_imu_samples() const {
+    std::string text = "#timestamp [ns],w_RS_S_x [rad s^-1],...\n";
+    for (const char* stamp : {"1403636579758555392", "1403636579763555584", "1403636579768555520",
+                              "1403636579813555456", "1403636579900000000"}) {
+      text += fmt::format("{},0.1,0.2,0.3,9.5,0.5,-0.5\n", stamp);
+    }
+    folder_.write("mav0/imu0/data.csv", text);
+  }
+
+  std::string complaint_with(const std::string& name, const std::string& content) {
+    const std::string before = core::read_file(folder_.at(name));
+    folder_.write(name, content);
+    const std::string said = complaint_on_opening();
+    folder_.write(name, before);
+    return said;
+  }
+
+  static constexpr std::array<const char*, 3> kNames = {
+      "1403636579763555584.png", "1403636579813555456.png", "1403636579863555584.png"};
+};
+
+TEST_F(Euroc, BothCamerasTheInertialUnitAndTheTruthComeTogether) {
+  const auto source = open();
+  EXPECT_EQ(source->info().format, "EuRoC");
+  EXPECT_EQ(source->info().num_frames, 3);
+  EXPECT_FALSE(source->info().has_depth);
+  EXPECT_TRUE(source->info().is_calibrated);
+  EXPECT_NEAR(source->info().frame_rate_hz, 20.0, 0.01);
+  const std::vector<core::Frame> frames = read_all();
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[1].name, kNames[1]);
+  EXPECT_NEAR(frames[0].stamp_s, 1403636579.763555584, 3e-7);
+  ASSERT_EQ(frames[2].images.size(), 2U);
+  EXPECT_EQ(frames[2].images[0].at<std::uint8_t>(3, 3), 50);
+  EXPECT_EQ(frames[2].images[1].at<std::uint8_t>(3, 3), 150);
+  EXPECT_FALSE(frames[0].depth_m);
+  ASSERT_EQ(frames[0].imu_since_last.size(), 2U);
+  EXPECT_EQ(frames[0].imu_since_last[1].stamp_s, frames[0].stamp_s);
+  EXPECT_EQ(frames[0].imu_since_last[0].angular_velocity_rad_s, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(frames[0].imu_since_last[0].acceleration_m_s2, Eigen::Vector3d(9.5, 0.5, -0.5));
+  EXPECT_EQ(frames[1].imu_since_last.size(), 2U);
+  EXPECT_THAT(frames[2].imu_since_last, IsEmpty());
+}
+
+TEST_F(Euroc, TheRigIsWhatTheSensorFilesSay) {
+  const core::Rig rig = *open()->next()->rig;
+  ASSERT_EQ(rig.cameras.size(), 2U);
+  const auto& left = std::get<core::PinholeRadtan>(rig.cameras[0]);
+  EXPECT_EQ(left.width_px, 32);
+  EXPECT_EQ(left.height_px, 24);
+  EXPECT_EQ(left.fx_px, 30.5);
+  EXPECT_EQ(left.fy_px, 31.0);
+  EXPECT_EQ(left.cx_px, 15.5);
+  EXPECT_EQ(left.cy_px, 11.25);
+  EXPECT_EQ(left.k1, -0.28);
+  EXPECT_EQ(left.k2, 0.07);
+  EXPECT_EQ(left.p1, 1.9e-04);
+  EXPECT_EQ(left.p2, 1.76e-05);
+  EXPECT_EQ(left.k3, 0.0);
+  ASSERT_EQ(rig.body_from_camera.size(), 2U);
+  // a quarter turn about z: x of the camera is y of the body
+  const Eigen::Vector3d ahead = rig.body_from_camera[0] * Eigen::Vector3d(1.0, 0.0, 0.0);
+  EXPECT_LT((ahead - Eigen::Vector3d(-0.02, 0.94, 0.01)).norm(), 1e-12);
+  EXPECT_EQ(rig.body_from_camera[1].translation.x(), 0.09);
+  ASSERT_TRUE(rig.imu);
+  EXPECT_EQ(rig.imu->body_from_imu.translation.z(), 0.5);
+  EXPECT_EQ(rig.imu->gyroscope_noise_rad_s_sqrt_hz, 1.6968e-04);
+  EXPECT_EQ(rig.imu->accelerometer_noise_m_s2_sqrt_hz, 2.0e-3);
+}
+
+TEST_F(Euroc, TheTruthIsThePoseOfCamera0) {
+  const core::Trajectory truth = open()->truth().trajectory;
+  ASSERT_EQ(truth.size(), 2U);
+  EXPECT_NEAR(truth[1].stamp_s, 1403636579.763555584, 3e-7);
+  // the body does not turn, so the camera sits where T_BS says
+  EXPECT_LT((truth[1].world_from_camera.translation - Eigen::Vector3d(0.98, 1.94, 3.01)).norm(),
+            1e-12);
+  // the quaternion is w x y z: (0.5, -0.5, 0.5, -0.5) turns x to -y
+  const Eigen::Vector3d x_of_body =
+      Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5) * Eigen::Vector3d::UnitX();
+  EXPECT_LT((x_of_body + Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_LT((truth[0].world_from_camera.rotation * -Eigen::Vector3d::UnitY() - x_of_body).norm(),
+            1e-12);
+}
+
+TEST_F(Euroc, TheFolderWithinIsTakenToo) {
+  folder_.write("same_place.txt", "0 0 0\n0 0 0\n1 0 0\n");
+  const auto source = open_source(folder_.root() / "mav0", config_);
+  EXPECT_EQ(source->info().format, "EuRoC");
+  EXPECT_EQ(source->info().name, folder_.root().filename().string());
+  EXPECT_EQ(source->truth().trajectory.size(), 2U);
+  ASSERT_TRUE(source->truth().places);
+  EXPECT_EQ(source->truth().places->at(2, 0), core::PlaceTruth::kSame);
+}
+
+TEST_F(Euroc, OneCameraAloneIsEnough) {
+  for (const char* name : {"cam1", "imu0", "state_groundtruth_estimate0"}) {
+    std::filesystem::remove_all(folder_.at("mav0/" + std::string(name)));
+  }
+  const auto source = open();
+  EXPECT_THAT(source->truth().trajectory, IsEmpty());
+  const auto frame = source->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->images.size(), 1U);
+  EXPECT_EQ(frame->rig->cameras.size(), 1U);
+  EXPECT_FALSE(frame->rig->imu);
+  EXPECT_THAT(frame->imu_since_last, IsEmpty());
+}
+
+TEST_F(Euroc, TheTwoCamerasArePairedByStamp) {
+  const std::string right = fmt::format(
+      "1403636579762000000,{}\n1403636579815000000,{}\n1403636579840000000,{}\n"
+      "1403636579864000000,{}\n",
+      kNames[2], kNames[1], kNames[1], kNames[0]);
+  folder_.write("mav0/cam1/data.csv", right);
+  write_grey(fmt::format("mav0/cam1/data/{}", kNames[2]), 77);
+  EXPECT_EQ(read_all().front().images[1].at<std::uint8_t>(0, 0), 77);
+  config_.max_stamp_difference_s = 0.001;
+  EXPECT_THAT(complaint_on_opening(),
+              AllOf(HasSubstr("mav0/cam0/data.csv, line 2"), HasSubstr(kNames[0]),
+                    HasSubstr("no partner within 0.001 s"), HasSubstr("mav0/cam1/data.csv")));
+}
+
+TEST_F(Euroc, AMissingFileIsNamed) {
+  for (const char* name :
+       {"cam0/sensor.yaml", "cam0/data.csv", "cam1/sensor.yaml", "cam1/data.csv",
+        "imu0/sensor.yaml", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
+    const std::string file = "mav0/" + std::string(name);
+    const std::string before = core::read_file(folder_.at(file));
+    std::filesystem::remove(folder_.at(file));
+    EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr(file), HasSubstr("No such file")));
+    folder_.write(file, before);
+  }
+  EXPECT_EQ(complaint_on_opening(), "no error");
+  for (const char* camera : {"cam0", "cam1"}) {
+    const std::string image = fmt::format("mav0/{}/data/{}", camera, kNames[1]);
+    const std::string before = core::read_file(folder_.at(image));
+    std::filesystem::remove(folder_.at(image));
+    EXPECT_THAT(complaint_on_opening(),
+                AllOf(HasSubstr(fmt::format("mav0/{}/data.csv, line 3", camera)),
+                      HasSubstr(kNames[1]), HasSubstr("does not exist")));
+    folder_.write(image, before);
+  }
+}
+
+TEST_F(Euroc, ABrokenListIsNamedWithItsLine) {
+  const auto said = [this](const std::string& text) {
+    return complaint_with("mav0/cam0/data.csv", text);
+  };
+  EXPECT_THAT(said("#only a header\n"), HasSubstr("lists no image"));
+  EXPECT_THAT(said("#\n1403636579.76,a.png\n"),
+              AllOf(HasSubstr("data.csv, line 2"), HasSubstr("nanoseconds")));
+  EXPECT_THAT(said("99999999999999999999,a.png\n"), HasSubstr("nanoseconds"));
+  EXPECT_THAT(said("-5,a.png\n"), HasSubstr("nanoseconds"));
+  EXPECT_THAT(said("1403636579763555584\n"), HasSubstr("expected 'stamp,filename'"));
+  EXPECT_THAT(said(fmt::format("20,{0}\n10,{0}\n", kNames[0])),
+              AllOf(HasSubstr("line 2"), HasSubstr("stamp 10 after 20")));
+  EXPECT_THAT(said(fmt::format("20,{0}\n20,{0}\n", kNames[0])), HasSubstr("stamp 20 after 20"));
+}
+
+TEST_F(Euroc, BrokenSamplesAndPosesAreNamedWithTheirLine) {
+  EXPECT_THAT(complaint_with("mav0/imu0/data.csv", "10,1,2,3,4,5\n"),
+              AllOf(HasSubstr("imu0/data.csv, line 1"), HasSubstr("found 6 values")));
+  EXPECT_THAT(complaint_with("mav0/imu0/data.csv", "10,1,2,3,4,5,nan\n"), HasSubstr("'nan'"));
+  const std::string poses = "mav0/state_groundtruth_estimate0/data.csv";
+  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0\n"), HasSubstr("found 7 values"));
+  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,x\n"), HasSubstr("'x'"));
+  EXPECT_THAT(complaint_with(poses, "10,1,2,3,2,0,0,0\n"),
+              AllOf(HasSubstr("line 1"), HasSubstr("norm 2")));
+}
+
+TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
+  const auto said = [this](const std::string& old, const std::string& now) {
+    return complaint_with("mav0/cam0/sensor.yaml", replaced(kLeftSensor, old, now));
+  };
+  EXPECT_THAT(said("resolution: [32, 24]", "resolution: [32]"),
+              AllOf(HasSubstr("cam0/sensor.yaml, line 11: resolution"), HasSubstr("1 values")));
+  EXPECT_THAT(said("[32, 24]", "[32, 24.5]"), HasSubstr("found 24.5"));
+  EXPECT_THAT(said("[32, 24]", "[32, 1e30]"), HasSubstr("pixels"));
+  EXPECT_THAT(said("[32, 24]", "[[32, 24]]"), HasSubstr("plain values"));
+  EXPECT_THAT(said("intrinsics", "intrinsic"), HasSubstr("has no intrinsics"));
+  EXPECT_THAT(said("[30.5", "[-30.5"), HasSubstr("focal lengths -30.5"));
+  EXPECT_THAT(said("15.5,", "155,"), AllOf(HasSubstr("intrinsics"), HasSubstr("outside")));
+  EXPECT_THAT(said("pinhole", "omni"), AllOf(HasSubstr("omni"), HasSubstr("pinhole")));
+  EXPECT_THAT(said("radial-tangential", "equidistant"), HasSubstr("radial-tangential"));
+  EXPECT_THAT(said("-0.28, ", ""), HasSubstr("distortion_coefficients"));
+  EXPECT_THAT(said("T_BS:", "T_XX:"), HasSubstr("has no T_BS"));
+  EXPECT_THAT(said("  data:", "  dat:"), HasSubstr("has no T_BS.data"));
+  EXPECT_THAT(said("[0.0, -1.0", "[0.0, -2.0"), HasSubstr("no rigid transform"));
+  EXPECT_THAT(said("[0.0, -1.0", "[inf, -1.0"), HasSubstr("'inf'"));
+  EXPECT_THAT(said("rate_hz: 20", "rate_hz: [20"), AllOf(HasSubstr("line"), HasSubstr("not YAML")));
+  EXPECT_THAT(complaint_with("mav0/cam0/sensor.yaml", "%YAML:1.0"), HasSubstr("sensor.yaml"));
+  EXPECT_THAT(complaint_with("mav0/cam0/sensor.yaml", ""), HasSubstr("sensor.yaml"));
+  const std::string imu = core::read_file(folder_.at("mav0/imu0/sensor.yaml"));
+  EXPECT_THAT(complaint_with("mav0/imu0/sensor.yaml", replaced(imu, "2.0e-3", "-1")),
+              AllOf(HasSubstr("accelerometer_noise_density"), HasSubstr("-1")));
+}
+
+TEST_F(Euroc, DamagedSensorFilesNeverCrash) {
+  const std::string good = kLeftSensor;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    core::Random random(seed);
+    std::string text = good.substr(0, random.index(good.size() + 1));
+    for (int i = 0; i < 4 && !text.empty(); ++i) {
+      text[random.index(text.size())] = static_cast<char>(random.index(256));
+    }
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    const std::string said = complaint_with("mav0/cam0/sensor.yaml", text);
+    EXPECT_THAT(said, testing::AnyOf("no error", HasSubstr("mav0/cam0/")));
+  }
+}
+
+TEST_F(Euroc, APictureOfAnotherSizeThanTheCalibrationIsNamed) {
+  folder_.write("mav0/cam1/sensor.yaml", replaced(kLeftSensor, "[32, 24]", "[64, 48]"));
+  EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr("mav0/cam1/data"), HasSubstr("32 x 24"),
+                                            HasSubstr("calibrated for 64 x 48")));
+}
+
+TEST_F(Euroc, ACameraFileOfTheUserReplacesCamera0WhereItSits) {
+  folder_.write("mine.txt", kCamera);
+  config_.camera = folder_.at("mine.txt").string();
+  const core::Rig rig = *open()->next()->rig;
+  ASSERT_EQ(rig.cameras.size(), 2U);
+  EXPECT_EQ(std::get<core::PinholeRadtan>(rig.cameras[0]).fx_px, 30.0);
+  EXPECT_EQ(std::get<core::PinholeRadtan>(rig.cameras[1]).fx_px, 30.5);
+  EXPECT_EQ(rig.body_from_camera[0].translation.x(), -0.02);
+}
+
+TEST_F(Open, CsvWordsAreCutAtCommasAndTrimmed) {
+  folder_.write("a.csv", "#x,y\r\n\r\n 1 ,two words,\t3\r\n,\n");
+  const auto lines = read_csv_lines(folder_.at("a.csv"));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_THAT(lines[0].words, ElementsAre("1", "two words", "3"));
+  EXPECT_THAT(lines[0].place, testing::EndsWith("a.csv, line 3"));
+  EXPECT_THAT(lines[1].words, ElementsAre(""));
+}
+
+}  // namespace
+}  // namespace samewhere::input

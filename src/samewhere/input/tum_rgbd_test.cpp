@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/input/test_recording.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class TumRgbd : public Open {
+ protected:
+  TumRgbd() {
+    for (const char* name : {"rgb/1.jpg", "rgb/2.jpg", "rgb/3.jpg"}) write_image(name);
+    for (const char* name : {"depth/1.png", "depth/2.png"}) write_depth(name);
+    folder_.write("rgb.txt",
+                  "# color images\n# file: 'x.bag'\n100.000000 rgb/1.jpg\n100.033000 rgb/2.jpg\n"
+                  "100.066000 rgb/3.jpg\n");
+    folder_.write("depth.txt", "# depth maps\n100.001000 depth/1.png\n100.070000 depth/2.png\n");
+    folder_.write("groundtruth.txt", "# truth\n99.9 1 2 3 0 0 0 1\n100.1 1 2 4 0 0 0 1\n");
+    folder_.write("camera.txt", kCamera);
+  }
+};
+
+TEST_F(TumRgbd, ColourDepthCameraAndTruthComeTogether) {
+  const auto source = open();
+  EXPECT_EQ(source->info().format, "TUM RGB-D");
+  EXPECT_EQ(source->info().num_frames, 3);
+  EXPECT_TRUE(source->info().has_depth);
+  EXPECT_TRUE(source->info().is_calibrated);
+  EXPECT_EQ(source->truth().trajectory.size(), 2U);
+  const std::vector<core::Frame> frames = read_all();
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_DOUBLE_EQ(frames[1].stamp_s, 100.033);
+  EXPECT_EQ(frames[1].name, "rgb/2.jpg");
+  ASSERT_TRUE(frames[0].depth_m);
+  EXPECT_FLOAT_EQ(frames[0].depth_m->at<float>(5, 5), 0.5F);  // 2500 / 5000
+  EXPECT_FALSE(frames[1].depth_m);                            // no depth image near in time
+  EXPECT_TRUE(frames[2].depth_m);
+}
+
+TEST_F(TumRgbd, TheDepthFactorCanBeSet) {
+  config_.depth_factor = 1000.0;
+  EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 2.5F);
+}
+
+TEST_F(TumRgbd, ColourAloneIsEnough) {
+  for (const char* name : {"depth.txt", "camera.txt", "groundtruth.txt"}) {
+    std::filesystem::remove(folder_.at(name));
+  }
+  const auto source = open();
+  EXPECT_FALSE(source->info().has_depth);
+  EXPECT_FALSE(source->info().is_calibrated);
+  EXPECT_TRUE(source->truth().trajectory.empty());
+  EXPECT_EQ(read_all().size(), 3U);
+}
+
+TEST_F(TumRgbd, AMissingDepthImageIsNamed) {
+  std::filesystem::remove(folder_.at("depth/2.png"));
+  EXPECT_THAT(complaint_on_opening(),
+              AllOf(HasSubstr("depth.txt, line 3"), HasSubstr("depth/2.png does not exist")));
+}
+
+TEST_F(TumRgbd, AMissingColourImageIsNamed) {
+  std::filesystem::remove(folder_.at("rgb/3.jpg"));
+  EXPECT_THAT(complaint_on_opening(),
+              AllOf(HasSubstr("rgb.txt, line 5"), HasSubstr("rgb/3.jpg does not exist")));
+}
+
+TEST_F(TumRgbd, StampsGoingBackwardsAreNamedWithLineAndBothStamps) {
+  folder_.write("rgb.txt", "100.000000 rgb/1.jpg\n100.033000 rgb/2.jpg\n100.020000 rgb/3.jpg\n");
+  EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr("rgb.txt, line 3"), HasSubstr("100.020000"),
+                                            HasSubstr("100.033000")));
+  folder_.write("rgb.txt", "100 rgb/1.jpg\n100 rgb/2.jpg\n");
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("stamp 100.000000 after 100.000000"));
+}
+
+TEST_F(TumRgbd, BrokenListsAreNamed) {
+  folder_.write("rgb.txt", "100.0\n");
+  EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr("rgb.txt, line 1"), HasSubstr("filename")));
+  folder_.write("rgb.txt", "nan rgb/1.jpg\n");
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("'nan'"));
+  folder_.write("rgb.txt", "# nothing\n");
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("lists no image"));
+}
+
+TEST_F(TumRgbd, BrokenTruthIsNamedOnOpening) {
+  folder_.write("groundtruth.txt", "# truth\n99.9 1 2 nan 0 0 0 1\n");
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("groundtruth.txt, line 2"));
+}
+
+TEST_F(TumRgbd, DepthOfAnotherSizeThanTheColourIsNamed) {
+  write_depth("depth/2.png", 16);
+  EXPECT_THAT(complaint_on_reading(), AllOf(HasSubstr("depth/2.png"), HasSubstr("16 x 24")));
+}
+
+}  // namespace
+}  // namespace samewhere::input

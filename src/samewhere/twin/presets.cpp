@@ -1,0 +1,40 @@
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/twin/presets_each.hpp>
+#include <samewhere/twin/presets_route.hpp>
+
+namespace samewhere::twin {
+namespace {
+
+struct Builder {
+  std::string_view preset;
+  World (*build)(const Spec&);
+};
+
+constexpr std::array<Builder, 8> kBuilders = {{{"office-loop", office_loop},
+                                               {"twin-corridors", twin_corridors},
+                                               {"hotel", hotel},
+                                               {"no-return", no_return},
+                                               {"warehouse", warehouse},
+                                               {"mirror", mirror},
+                                               {"long-haul", long_haul},
+                                               {"second-visit", second_visit}}};
+
+}  // namespace
+
+World build_world(const Spec& spec) {
+  for (const auto& [preset, build] : kBuilders) {
+    if (spec.preset != preset) continue;
+    World world = build(spec);
+    world.paths_of_people = paths_along(world.route);
+    world.route.speed_m_s *= spec.speed;
+    return world;
+  }
+  throw core::InputError(fmt::format("unknown preset {}", spec.preset));
+}
+
+}  // namespace samewhere::twin

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <samewhere/twin/furnisher.hpp>
+#include <samewhere/twin/plan.hpp>
+#include <samewhere/twin/spec.hpp>
+
+namespace samewhere::twin {
+
+// One visit of a building: how bright it is, and when.
+struct Visit {
+  std::uint64_t index = 0;
+  LightSetting light;
+};
+
+// A building in the making, as it is at one visit.
+struct Draft {
+  Spec spec;
+  Visit visit;
+  Plan plan;
+  Building building;
+};
+
+// The units and spaces of the plan, nothing to see yet.
+Draft draft_of(const Spec& spec, const Plan& plan, const Visit& visit = {});
+
+// What stands along one side of a space.
+enum class Use : std::uint8_t {
+  kBare,     // skirting only
+  kPlain,    // boards, posters and the like
+  kDoors,    // and doors with numbers
+  kWindows,  // and windows
+};
+
+// How a space is dressed.
+struct Dress {
+  std::array<Use, 4> sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kPlain};  // as WallPiece
+  float pitch_m = 2.6F;      // at least this from door to door
+  float max_depth_m = 0.4F;  // nothing stands out further from its walls
+  bool has_ducts = true;     // along walls with doors
+  bool has_pipes = false;    // along plain walls, below the ceiling
+  bool has_lamps = true;
+};
+
+// Puts what belongs into a corridor or room where there is room for it, in one unit. What hangs
+// where is half common, half own, as looks are (Style).
+class Dresser {
+ public:
+  // Begins with floors, ceilings, walls, lintels and risers of all spaces of the unit. The draft
+  // must outlive it.
+  Dresser(Draft& draft, int unit);
+
+  // Doors are numbered on from here.
+  void number_from(int number) { next_number_ = number; }
+  void dress(int space, const Dress& dress);
+  // Desk, chair and shelves; `window_side` is the side across from the door. At a later visit
+  // chairs and bins have moved and the plant is gone.
+  void furnish_office(int space, int window_side);
+  // Sofa, table, chair and plant along one side, windows left and right of it.
+  void furnish_lounge(int space, int sofa_side);
+  // Handrails and lamps of a stair built by add_u_stair() at this corner.
+  void dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m);
+
+  // The whole wall of a side, the longest if there are several.
+  Wall wall_of(int space, int side) const;
+  Furnisher& furnisher() { return furnisher_; }
+
+ private:
+  struct Gap;
+
+  void add_surfaces();
+  void dress_wall(const WallPiece& piece, const Dress& dress);
+  void add_bay(const Place& place, Use use);
+  void fill_gap(const Gap& gap);
+  void add_skirting(const Wall& wall, const std::vector<float>& doors_m);
+  void add_ceiling_things(const Space& space);
+
+  const Plan& plan_;
+  int unit_;
+  Style layout_;
+  bool is_later_visit_;
+  Furnisher furnisher_;
+  std::uint64_t num_gaps_ = 0;
+  int next_number_ = 1;
+};
+
+// A spot before a wall, its back to it.
+Spot spot_before(const Wall& wall, float along_m, float out_m);
+
+}  // namespace samewhere::twin

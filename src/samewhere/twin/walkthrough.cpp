@@ -1,0 +1,85 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/twin/camera.hpp>
+#include <samewhere/twin/inertial.hpp>
+#include <samewhere/twin/walkthrough.hpp>
+
+namespace samewhere::twin {
+namespace {
+
+std::shared_ptr<const core::Rig> rig_for(const Spec& spec) {
+  core::Rig rig{.cameras = {kTwinCamera},
+                .body_from_camera = {core::Rigid3{}},
+                .imu = imu_description(InertialNoise{})};
+  if (spec.sensors == Sensors::kStereo) {
+    core::Rigid3 right;
+    right.translation.x() = kStereoBaseline_m;
+    rig.cameras.push_back(kTwinCamera);
+    rig.body_from_camera.push_back(right);
+  }
+  return std::make_shared<const core::Rig>(std::move(rig));
+}
+
+Route at_speed(Route route, double ratio) {
+  route.speed_m_s *= ratio;
+  return route;
+}
+
+Walk walk_of(const Motion& motion, int num_frames) {
+  Walk walk{.poses = motion.frames(kFrameRate_hz), .visit_of_frame = {}};
+  if (num_frames > 0) {
+    walk.poses.resize(std::min(walk.poses.size(), static_cast<std::size_t>(num_frames)));
+  }
+  for (const auto& pose : walk.poses) {
+    walk.visit_of_frame.push_back(motion.visit_at(pose.stamp_s).value_or(kDark));
+  }
+  return walk;
+}
+
+std::vector<Person> people_in(const World& world, const Spec& spec) {
+  std::vector<std::vector<Eigen::Vector3d>> paths_m;
+  for (const auto& path : world.paths_of_people) paths_m.push_back(path.points_m);
+  return people_on(paths_m, spec.people, core::seed_of(spec.seed, "twin.people", 0));
+}
+
+}  // namespace
+
+Walkthrough::Walkthrough(const Spec& spec, const Config& config)
+    : spec_(spec),
+      name_(fmt::format("{}-seed{}", spec.preset, spec.seed)),
+      world_(build_world(spec)),
+      motion_(at_speed(world_.route, spec.speed), core::seed_of(spec.seed, "twin.motion", 0)),
+      rig_(rig_for(spec)),
+      walk_(walk_of(motion_, config.num_frames)),
+      people_(people_in(world_, spec)),
+      imu_(inertial_samples(motion_, InertialNoise{}, core::seed_of(spec.seed, "twin.imu", 0))) {
+  rays_.reserve(world_.visits.size());
+  for (const auto& building : world_.visits) {
+    rays_.emplace_back(building.rectangles);
+    visits_.push_back({.building = &building, .rays = &rays_.back()});
+  }
+}
+
+std::span<const core::ImuSample> Walkthrough::imu_since_last(int frame) const {
+  // stamps of frames and samples that mean the same moment may differ in the last bits
+  constexpr double kTolerance_s = 1e-6;
+  const auto first_after = [&](double stamp_s) {
+    return std::partition_point(imu_.begin(), imu_.end(), [&](const core::ImuSample& sample) {
+      return sample.stamp_s <= stamp_s + kTolerance_s;
+    });
+  };
+  const auto first = frame == 0 ? imu_.begin() : first_after(stamp_s(frame - 1));
+  return {first, first_after(stamp_s(frame))};
+}
+
+std::vector<WheelSample> Walkthrough::wheels() const {
+  if (motion_.carrier() != Carrier::kRobot) return {};
+  return wheel_samples(motion_, WheelNoise{}, core::seed_of(spec_.seed, "twin.wheels", 0));
+}
+
+WalkTruth Walkthrough::truth() const { return truth_of(walk_, visits_, rig_->cameras.front()); }
+
+}  // namespace samewhere::twin

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <samewhere/core/frame.hpp>
+#include <samewhere/twin/config.hpp>
+#include <samewhere/twin/motion.hpp>
+#include <samewhere/twin/people.hpp>
+#include <samewhere/twin/presets.hpp>
+#include <samewhere/twin/truth.hpp>
+#include <samewhere/twin/wheel.hpp>
+
+namespace samewhere::twin {
+
+inline constexpr double kFrameRate_hz = 15.0;
+
+// A walk through rendered buildings before any picture is taken: what stands where, where the
+// camera is at every frame, what its inertial unit and a robot's wheels say. Stays where it is.
+class Walkthrough {
+ public:
+  // Throws InputError if the spec names no preset.
+  Walkthrough(const Spec& spec, const Config& config);
+  Walkthrough(const Walkthrough&) = delete;
+  Walkthrough& operator=(const Walkthrough&) = delete;
+
+  const Spec& spec() const { return spec_; }
+  // For titles and folders: "hotel-seed3".
+  const std::string& name() const { return name_; }
+  int num_frames() const { return static_cast<int>(walk_.poses.size()); }
+  double stamp_s(int frame) const { return walk_.poses[static_cast<std::size_t>(frame)].stamp_s; }
+  const std::shared_ptr<const core::Rig>& rig() const { return rig_; }
+  const Walk& walk() const { return walk_; }
+  const Motion& motion() const { return motion_; }
+  const std::vector<Visit>& visits() const { return visits_; }
+  const std::vector<Person>& people() const { return people_; }
+
+  // Measured since the frame before, that frame's own moment excluded; of frame 0 the first sample.
+  std::span<const core::ImuSample> imu_since_last(int frame) const;
+  // Of the whole walk; empty if no robot walks it.
+  std::vector<WheelSample> wheels() const;
+  // Exact; takes some seconds.
+  WalkTruth truth() const;
+
+ private:
+  Spec spec_;
+  std::string name_;
+  World world_;
+  Motion motion_;
+  std::shared_ptr<const core::Rig> rig_;
+  Walk walk_;
+  std::vector<RayScene> rays_;  // of the visits
+  std::vector<Visit> visits_;
+  std::vector<Person> people_;
+  std::vector<core::ImuSample> imu_;
+};
+
+}  // namespace samewhere::twin
