@@ -11,17 +11,8 @@ TexturePoint crumpled(const TexturePoint& p, const Seed& seed) {
   constexpr float kPer_m = 40.0F;
   constexpr float kShift_m = 0.011F;
   if (p.footprint_m * kPer_m > 1.0F) return p;
-  const float u = p.u_m * kPer_m;
-  const float v = p.v_m * kPer_m;
-  return {p.u_m + kShift_m * value_noise(u, v, seed),
-          p.v_m + kShift_m * value_noise(u, v, seed + 1), p.footprint_m};
-}
-
-// Light and shade of a rough surface lit from above: the slope of its height.
-float relief(const TexturePoint& p, const Octaves& octaves, const Grain& grain) {
-  constexpr float kStep_m = 0.008F;
-  const TexturePoint above{p.u_m, p.v_m + kStep_m, p.footprint_m};
-  return octave_noise(above, octaves, grain) - octave_noise(p, octaves, grain);
+  const float shift_m = kShift_m * value_noise(p.u_m * kPer_m, p.v_m * kPer_m, seed);
+  return {p.u_m + shift_m, p.v_m - shift_m, p.footprint_m};
 }
 
 // Blocks laid in half bond.
@@ -55,7 +46,7 @@ Colour dado_paint(const Material& m, const TexturePoint& p) {
 // Clouds of dirt a metre across.
 float clouds(const TexturePoint& p, std::uint32_t wear_seed, float strength) {
   return strength *
-         octave_noise(p, {.wavelength_m = 1.7F, .count = 3, .gain = 0.6F}, wear_seed + 60);
+         octave_noise(p, {.wavelength_m = 1.4F, .count = 2, .gain = 0.5F}, wear_seed + 60);
 }
 
 }  // namespace
@@ -68,11 +59,12 @@ float marked(const TexturePoint& p, const Material& m, float strength) {
                 0.6F * scratches(crumpled_p, {.cell_m = 0.29F, .density = 0.3F}, grain + 4);
   const std::uint32_t wear = m.wear_seed;
   marks += 0.25F * spots(crumpled_p, {.cell_m = 0.37F, .density = 0.1F}, wear);
-  constexpr float kFine_m = 0.006F;
-  if (p.footprint_m < kFine_m) {
+  constexpr float kFine_m = 0.0032F;
+  const float fine = visible_share(kFine_m, p.footprint_m);
+  if (fine > 0.0F) {
     // in patches: where hands and bags go
     const float worn_off = 0.75F + 0.8F * value_noise(p.u_m * 4.0F, p.v_m * 4.0F, wear + 4);
-    marks += std::max(worn_off, 0.3F) *
+    marks += fine * std::max(worn_off, 0.3F) *
              (0.8F * spots(p, {.cell_m = 0.009F, .density = 0.3F}, wear + 1) +
               1.1F * scratches(p, {.cell_m = 0.05F, .density = 0.35F}, wear + 2));
     marks -= 0.16F * octave_noise(p, {.wavelength_m = 0.003F, .count = 2, .gain = 0.8F}, wear + 3);
@@ -104,7 +96,7 @@ float blotted(const Rectangle& rectangle, const TexturePoint& point) {
 Colour block_wall(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
   const float rough =
-      0.21F * relief(p, {.wavelength_m = 0.06F, .count = 4, .gain = 0.85F}, grain + 20);
+      0.03F * octave_slope(p, {.wavelength_m = 0.06F, .count = 4, .gain = 1.7F}, grain + 20);
   const float wear = lerp(0.75F, 0.45F, clamp01(p.v_m / 2.0F));
   return dado_paint(m, p) * ((1.0F + clouds(p, m.wear_seed, 0.05F) + rough) *
                              masonry(p, {}, grain + 30) * marked(p, m, wear));
@@ -114,7 +106,7 @@ Colour brick_wall(const Material& m, const TexturePoint& p) {
   constexpr Bond kBricks{0.25F, 0.0755F, 0.005F, 0.1F, 0.35F};
   const Grain grain = grain_of(m);
   const float rough =
-      0.2F * relief(p, {.wavelength_m = 0.05F, .count = 4, .gain = 0.8F}, grain + 20);
+      0.03F * octave_slope(p, {.wavelength_m = 0.05F, .count = 4, .gain = 1.6F}, grain + 20);
   return dado_paint(m, p) * ((1.0F + clouds(p, m.wear_seed, 0.05F) + rough) *
                              masonry(p, kBricks, grain + 30) * marked(p, m, 0.4F));
 }
@@ -122,7 +114,7 @@ Colour brick_wall(const Material& m, const TexturePoint& p) {
 Colour plaster(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
   const float rough =
-      0.16F * relief(p, {.wavelength_m = 0.03F, .count = 3, .gain = 0.8F}, grain + 20);
+      0.035F * octave_slope(p, {.wavelength_m = 0.03F, .count = 3, .gain = 1.4F}, grain + 20);
   const float patches =
       0.035F * octave_noise(p, {.wavelength_m = 0.5F, .count = 4, .gain = 0.6F}, grain + 30);
   return m.colour *
@@ -162,7 +154,7 @@ Colour carpet(const Material& m, const TexturePoint& in_unit) {
   // trodden down, with fluff on it
   const float trodden = clouds(in_unit, m.wear_seed, 0.09F);
   float fluff = 0.5F * spots(in_unit, {.cell_m = 0.31F, .density = 0.06F}, m.wear_seed + 1);
-  if (p.footprint_m < 0.006F) {
+  if (p.footprint_m < 0.004F) {
     fluff +=
         0.8F * scratches(in_unit, {.cell_m = 0.04F, .density = 0.25F}, m.wear_seed + 2) +
         0.3F * octave_noise(p, {.wavelength_m = 0.004F, .count = 2, .gain = 0.8F}, m.wear_seed + 3);

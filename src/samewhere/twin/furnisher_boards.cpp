@@ -32,7 +32,8 @@ void Furnisher::add_notice_board(const Place& place) {
     const bool is_wide = draws.happens(0.3);
     const bool is_there = draws.happens(0.85);
     const auto column = static_cast<float>(slot % kNumColumns);
-    const auto row = static_cast<float>(slot / kNumColumns);
+    const int row_index = slot / kNumColumns;
+    const auto row = static_cast<float>(row_index);
     const Eigen::Vector2f middle_m(-0.41F + 0.27F * column, 1.32F + 0.4F * row);
     // never two at one depth: they may overlap
     const float out_m = 0.0155F + 0.0004F * static_cast<float>(slot);

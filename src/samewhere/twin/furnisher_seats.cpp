@@ -79,7 +79,7 @@ void Furnisher::add_chair(const Spot& spot) {
 
 void Furnisher::add_table(const Spot& spot) {
   constexpr float kTop_m = 0.74F;
-  const Eigen::Vector2f kBoard_m(1.2F, 0.7F);
+  const Eigen::Vector2f board_m(1.2F, 0.7F);
   Piece piece = piece_at(spot);
   const Colour tops[] = {palette_.wood, 0.9F * paints::kWhite, 0.8F * paints::kGrey};
   const Material top = piece.made_of(Finish::kWood, piece.draws().blend(tops));
@@ -87,10 +87,10 @@ void Furnisher::add_table(const Spot& spot) {
   const bool has_paper = piece.draws().happens(0.5);
   const float paper_m = piece.draws().shift(0.35F);
   piece.begin_object("table");
-  piece.add_block({{-0.5F * kBoard_m.x(), kTop_m - 0.026F, -0.5F * kBoard_m.y()},
-                   {0.5F * kBoard_m.x(), kTop_m, 0.5F * kBoard_m.y()}},
+  piece.add_block({{-0.5F * board_m.x(), kTop_m - 0.026F, -0.5F * board_m.y()},
+                   {0.5F * board_m.x(), kTop_m, 0.5F * board_m.y()}},
                   top);
-  add_legs(piece, kBoard_m, kTop_m - 0.026F, steel);
+  add_legs(piece, board_m, kTop_m - 0.026F, steel);
   for (const float z : {-0.29F, 0.29F}) {
     piece.add_block({{-0.53F, kTop_m - 0.07F, z - 0.012F}, {0.53F, kTop_m - 0.026F, z + 0.012F}},
                     steel);
@@ -109,7 +109,7 @@ void Furnisher::add_table(const Spot& spot) {
 // One sits behind it and looks at the screen's front: the desk's own front is its far side.
 void Furnisher::add_desk(const Spot& spot) {
   constexpr float kTop_m = 0.73F;
-  const Eigen::Vector2f kBoard_m(1.6F, 0.8F);
+  const Eigen::Vector2f board_m(1.6F, 0.8F);
   Piece piece = piece_at(spot);
   const Colour tops[] = {palette_.wood, 0.9F * paints::kWhite, 0.8F * paints::kGrey};
   const Material top = piece.made_of(Finish::kWood, piece.draws().blend(tops));
@@ -118,7 +118,7 @@ void Furnisher::add_desk(const Spot& spot) {
   const Material black = piece.made_of(Finish::kPlastic, paints::kBlack);
   piece.begin_object("desk");
   piece.add_block({{-0.8F, kTop_m - 0.025F, -0.4F}, {0.8F, kTop_m, 0.4F}}, top);
-  add_legs(piece, kBoard_m, kTop_m - 0.025F, steel);
+  add_legs(piece, board_m, kTop_m - 0.025F, steel);
   piece.add_block({{-0.74F, 0.35F, 0.33F}, {0.74F, 0.7F, 0.348F}}, grey);
   piece.add_block({{0.32F, 0.05F, -0.36F}, {0.72F, 0.6F, 0.24F}}, grey);
   for (const float y_m : {0.2F, 0.38F, 0.55F}) {

@@ -58,7 +58,8 @@ void add_cartons(Piece& piece, const Eigen::Vector3f& at_m, float room_m) {
   for (int i = 0; i < num_layers * kNumColumns * kNumRows; ++i) {
     const auto column = static_cast<float>(i % kNumColumns);
     const auto row = static_cast<float>((i / kNumColumns) % kNumRows);
-    const auto layer = static_cast<float>(i / (kNumColumns * kNumRows));
+    const int layer_index = i / (kNumColumns * kNumRows);
+    const auto layer = static_cast<float>(layer_index);
     const Material carton = piece.made_of(Finish::kCarton, draws.blend(0.9F, 1.1F) * tint);
     const Material label = piece.made_of(Finish::kLabel, paints::kWhite, paints::kBlack);
     const float jitter_m = draws.shift(0.01F);
@@ -95,6 +96,57 @@ void add_load(Piece& piece, const Eigen::Vector3f& at_m, float room_m) {
   }
 }
 
+constexpr float kHalfRack_m = 0.55F;
+constexpr float kLevel_m = 1.5F;
+
+// Where the bays of a rack are along it.
+struct Bays {
+  explicit Bays(const RackSize& size)
+      : count(std::max(1, static_cast<int>(size.length_m / 1.4F))),
+        width_m(size.length_m / static_cast<float>(count)),
+        left_m(-0.5F * size.length_m),
+        right_m(0.5F * size.length_m) {}
+
+  float edge_m(int i) const { return left_m + width_m * static_cast<float>(i); }
+  float middle_m(int i) const { return edge_m(i) + 0.5F * width_m; }
+
+  int count;
+  float width_m;
+  float left_m;
+  float right_m;
+};
+
+// Two posts at one place along the rack with braces between them.
+void add_uprights(Piece& piece, float x_m, float top_m, const Material& paint) {
+  for (const float z_m : {-kHalfRack_m, kHalfRack_m}) {
+    piece.add_block({{x_m - 0.045F, 0.0F, z_m - 0.035F}, {x_m + 0.045F, top_m, z_m + 0.035F}},
+                    paint);
+  }
+  for (float y_m = 0.2F; y_m + 0.8F < top_m; y_m += 0.8F) {
+    piece.add_bar({.from_m = {x_m, y_m, -kHalfRack_m},
+                   .to_m = {x_m, y_m + 0.7F, kHalfRack_m},
+                   .radius_m = 0.018F,
+                   .num_sides = 6},
+                  paint);
+  }
+}
+
+// Along the front (side 1) or the back (-1) of a level, with a tag for each bay.
+void add_beam(Piece& piece, const Bays& bays, float y_m, float side) {
+  const Material paint = piece.made_of(Finish::kPaint, paints::kOrange);
+  const float z_m = side * kHalfRack_m;
+  piece.add_block({{bays.left_m, y_m - 0.1F, z_m - 0.025F}, {bays.right_m, y_m, z_m + 0.025F}},
+                  paint);
+  for (int i = 0; i < bays.count; ++i) {
+    const Material tag = piece.made_of(Finish::kLabel, paints::kWhite, paints::kBlack);
+    piece.add_panel(
+        {.corner_m = {bays.middle_m(i) - side * 0.05F, y_m - 0.085F, z_m + side * 0.026F},
+         .right = side * Eigen::Vector3f::UnitX(),
+         .size_m = {0.1F, 0.07F}},
+        tag);
+  }
+}
+
 }  // namespace
 
 void Furnisher::add_pallet(const Spot& spot) {
@@ -106,54 +158,23 @@ void Furnisher::add_pallet(const Spot& spot) {
 }
 
 void Furnisher::add_rack(const Spot& spot, const RackSize& size) {
-  constexpr float kHalfDepth_m = 0.55F;
-  constexpr float kLevel_m = 1.5F;
-  constexpr float kBay_m = 1.4F;
   Piece piece = piece_at(spot);
-  const Colour uprights[] = {paints::kBlue, paints::kGrey, 0.6F * paints::kGreen};
-  const Material upright = piece.made_of(Finish::kPaint, piece.draws().blend(uprights));
-  const Material beam = piece.made_of(Finish::kPaint, paints::kOrange);
-  const int num_bays = std::max(1, static_cast<int>(size.length_m / kBay_m));
-  const float bay_m = size.length_m / static_cast<float>(num_bays);
-  const float left_m = -0.5F * size.length_m;
+  const Colour coats[] = {paints::kBlue, paints::kGrey, 0.6F * paints::kGreen};
+  const Material paint = piece.made_of(Finish::kPaint, piece.draws().blend(coats));
+  const Bays bays(size);
   const float top_m = kLevel_m * static_cast<float>(size.num_levels - 1) + 0.5F;
   piece.begin_object("rack");
-  for (int i = 0; i <= num_bays; ++i) {
-    const float x_m = left_m + bay_m * static_cast<float>(i);
-    for (const float z_m : {-kHalfDepth_m, kHalfDepth_m}) {
-      piece.add_block({{x_m - 0.045F, 0.0F, z_m - 0.035F}, {x_m + 0.045F, top_m, z_m + 0.035F}},
-                      upright);
-    }
-    for (float y_m = 0.2F; y_m + 0.8F < top_m; y_m += 0.8F) {
-      piece.add_bar({.from_m = {x_m, y_m, -kHalfDepth_m},
-                     .to_m = {x_m, y_m + 0.7F, kHalfDepth_m},
-                     .radius_m = 0.018F,
-                     .num_sides = 6},
-                    upright);
-    }
-  }
+  for (int i = 0; i <= bays.count; ++i) add_uprights(piece, bays.edge_m(i), top_m, paint);
   for (int level = 0; level < size.num_levels; ++level) {
     const float y_m = kLevel_m * static_cast<float>(level);
-    for (const float z_m : {-kHalfDepth_m, kHalfDepth_m}) {
-      if (level == 0) continue;  // stands on the floor
-      piece.add_block(
-          {{left_m, y_m - 0.1F, z_m - 0.025F}, {left_m + size.length_m, y_m, z_m + 0.025F}}, beam);
-      Material tag = piece.made_of(Finish::kLabel, paints::kWhite, paints::kBlack);
-      const float side = z_m > 0.0F ? 1.0F : -1.0F;
-      for (int i = 0; i < num_bays; ++i) {
-        const float x_m = left_m + bay_m * (static_cast<float>(i) + 0.5F);
-        tag.pattern_seed += 1;
-        piece.add_panel({.corner_m = {x_m - side * 0.05F, y_m - 0.085F, z_m + side * 0.026F},
-                         .right = side * Eigen::Vector3f::UnitX(),
-                         .size_m = {0.1F, 0.07F}},
-                        tag);
-      }
+    piece.begin_part(1000 + level);
+    if (level > 0) {  // the lowest stands on the floor
+      for (const float side : {-1.0F, 1.0F}) add_beam(piece, bays, y_m, side);
     }
-    for (int i = 0; i < num_bays; ++i) {
-      const float x_m = left_m + bay_m * (static_cast<float>(i) + 0.5F);
-      piece.begin_part(level * num_bays + i);
+    for (int i = 0; i < bays.count; ++i) {
+      piece.begin_part(level * bays.count + i);
       const float shift_m = piece.draws().shift(0.04F);
-      add_load(piece, {x_m + shift_m, y_m, 0.0F}, kLevel_m - kPallet_m - 0.2F);
+      add_load(piece, {bays.middle_m(i) + shift_m, y_m, 0.0F}, kLevel_m - kPallet_m - 0.2F);
     }
   }
   piece.end_object();

@@ -111,7 +111,8 @@ inline float grid_value(int x, int y, const Grain& grain) {
 inline std::uint32_t hash_cell(int x, int y, const Grain& grain) {
   if (grain.own_ratio > 0.0F) {
     const std::uint32_t own = hash_cell(x, y, grain.own);
-    if (unit_float(scramble(own)) < grain.own_ratio) return own;
+    // one step of mixing: the bits decide other things, too
+    if (unit_float(own * 0x9e3779b1U) < grain.own_ratio) return own;
   }
   return hash_cell(x, y, grain.common);
 }
@@ -156,6 +157,35 @@ float octave_noise(const TexturePoint& p, const Octaves& octaves, const Seed& se
     sum += amplitude * std::min(pixels - 1.0F, 1.0F) *
            value_noise(p.u_m * frequency_per_m, p.v_m * frequency_per_m,
                        seed + static_cast<std::uint32_t>(i));
+    amplitude *= octaves.gain;
+    frequency_per_m *= 2.0F;
+    pixels *= 0.5F;
+  }
+  return sum;
+}
+
+// Light and shade of a rough surface lit from above: slopes upwards of octaves of value noise, in
+// the same numbers as the octaves' own values.
+template <class Seed>
+float octave_slope(const TexturePoint& p, const Octaves& octaves, const Seed& seed) {
+  float sum = 0.0F;
+  float amplitude = 1.0F;
+  float frequency_per_m = 1.0F / octaves.wavelength_m;
+  float pixels = octaves.wavelength_m / p.footprint_m;  // per wavelength
+  for (int i = 0; i < octaves.count && pixels > 1.0F; ++i) {
+    // grids turned one way and the other, or their rows would show
+    const float turn = (i & 1) == 0 ? 0.6F : -0.6F;
+    const float x = (0.8F * p.u_m + turn * p.v_m) * frequency_per_m;
+    const float y = (0.8F * p.v_m - turn * p.u_m) * frequency_per_m;
+    const int ix = floor_int(x);
+    const int iy = floor_int(y);
+    const float next_x = smoothstep(x - static_cast<float>(ix));
+    const float up = y - static_cast<float>(iy);
+    const Seed octave = seed + static_cast<std::uint32_t>(i);
+    const float below = lerp(grid_value(ix, iy, octave), grid_value(ix + 1, iy, octave), next_x);
+    const float above =
+        lerp(grid_value(ix, iy + 1, octave), grid_value(ix + 1, iy + 1, octave), next_x);
+    sum += amplitude * std::min(pixels - 1.0F, 1.0F) * 6.0F * up * (1.0F - up) * (above - below);
     amplitude *= octaves.gain;
     frequency_per_m *= 2.0F;
     pixels *= 0.5F;
