@@ -238,15 +238,21 @@ double Eye::overlap(const Sight& query, const Sight& match) const {
   return static_cast<double>(num_shared) / static_cast<double>(query.points.size());
 }
 
-double Eye::alike(const Sight& query, const Sight& match, const Viewpoint& match_in_query) const {
+double Eye::alike(const Sight& query, const Sight& match, const Viewpoint& match_in_query,
+                  double least) const {
   if (query.points.empty() || match.points.empty()) return 0.0;
-  const auto num_alike =
-      std::count_if(query.points.begin(), query.points.end(), [&](const SeenPoint& point) {
-        const int found = surface_found(match, match_in_query, point, false);
-        return found != kNothing && looks_alike(rectangle_of(query, point.surface).material,
-                                                rectangle_of(match, found).material);
-      });
-  return static_cast<double>(num_alike) / static_cast<double>(query.points.size());
+  const auto num_points = static_cast<double>(query.points.size());
+  const double max_unlike = (1.0 - least) * num_points;
+  int num_unlike = 0;
+  for (const SeenPoint& point : query.points) {
+    const int found = surface_found(match, match_in_query, point, false);
+    const bool is_alike =
+        found != kNothing && looks_alike(rectangle_of(query, point.surface).material,
+                                         rectangle_of(match, found).material);
+    num_unlike += is_alike ? 0 : 1;
+    if (num_unlike > max_unlike) return 0.0;
+  }
+  return 1.0 - num_unlike / num_points;
 }
 
 }  // namespace samewhere::twin

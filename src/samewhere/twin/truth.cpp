@@ -164,13 +164,14 @@ class Judge {
           !look_the_same_way(match_here, from)) {
         continue;
       }
-      const double query_by_match = eye_.alike(query.sight, match.sight, match_here);
-      if (query_by_match < kMinSame || query_by_match <= best) continue;
+      const double least = std::max(best, kMinSame);
+      const double query_by_match = eye_.alike(query.sight, match.sight, match_here, least);
+      if (query_by_match <= best) continue;
       const double match_by_query =
-          eye_.alike(match.sight, query.sight, twin.there_from_here * from);
+          eye_.alike(match.sight, query.sight, twin.there_from_here * from, least);
       best = std::max(best, Shares{query_by_match, match_by_query}.smaller());
     }
-    return best >= kMinSame ? best : 0.0;
+    return best;
   }
 
  private:

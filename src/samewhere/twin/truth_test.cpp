@@ -255,7 +255,7 @@ TEST(WalkTruth, IsFreeOfContradictionsAndTheSameBackwards) {
     }
     std::sort(reversed.begin(), reversed.end());
     EXPECT_EQ(core_truth({}, forwards).impostors, reversed);
-    EXPECT_EQ(core_truth({}, forwards).places->values.size(), std::size_t{kNumFrames * kNumFrames});
+    EXPECT_EQ(core_truth({}, forwards).places->values.size(), std::size_t{kNumFrames} * kNumFrames);
   }
 }
 
