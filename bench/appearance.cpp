@@ -3,6 +3,7 @@
 // baseline and angle; rendered sources beside the nearest recorded one.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -125,51 +126,73 @@ void add_picture_figures(const Views& views, std::vector<Figure>& figures) {
   }
 }
 
-struct ClassFigures {
-  std::optional<double> inliers;
-  std::optional<double> inlier_ratio;
-  std::optional<double> overlap;
+// Pairs of views that are counted together.
+struct PairFigures {
+  std::vector<double> inliers;
+  std::vector<double> inlier_ratios;
+  std::vector<double> overlaps;
 };
 
-ClassFigures match(const std::vector<ViewPair>& pairs, const Views& views) {
-  if (pairs.size() < kMinPairs) return {};
-  std::vector<double> inliers;
-  std::vector<double> ratios;
-  std::vector<double> overlaps;
-  for (const ViewPair& pair : pairs) {
-    const OrbFeatures& first = views.orb[static_cast<std::size_t>(pair.first)];
-    const OrbFeatures& second = views.orb[static_cast<std::size_t>(pair.second)];
-    inliers.push_back(count_inliers(first, second));
-    ratios.push_back(inliers.back() / std::max(1, first.size()));
-    overlaps.push_back(pair.overlap);
-  }
-  return {quantile(inliers, 0.5), quantile(ratios, 0.5), quantile(overlaps, 0.5)};
+void add_pair(const ViewPair& pair, int num_inliers, int num_features, PairFigures& figures) {
+  figures.inliers.push_back(num_inliers);
+  figures.inlier_ratios.push_back(static_cast<double>(num_inliers) / std::max(1, num_features));
+  figures.overlaps.push_back(pair.overlap);
 }
 
-void add_match_figures(const std::string& name, const Views& views, int num_pairs,
-                       std::vector<Figure>& figures) {
-  const auto pairs = draw_pairs(views.geometry, num_pairs);
-  std::vector<ClassFigures> classes;
+// All pairs, by class and by parallax.
+struct MatchFigures {
+  std::array<PairFigures, kNumClasses> by_class;
+  std::array<PairFigures, kAngles_deg.size() - 1> by_parallax;
+};
+
+MatchFigures match(const std::string& name, const Views& views, int num_pairs) {
+  const auto drawn = draw_pairs(views.geometry, num_pairs);
   core::Progress progress("matching pairs of " + name, kNumClasses);
-  for (const auto& pairs_of_class : pairs) {
-    classes.push_back(match(pairs_of_class, views));
-    progress.update(static_cast<int>(classes.size()));
+  MatchFigures figures;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    for (const ViewPair& pair : drawn[i]) {
+      const OrbFeatures& first = views.orb[static_cast<std::size_t>(pair.first)];
+      const OrbFeatures& second = views.orb[static_cast<std::size_t>(pair.second)];
+      const int num_inliers = count_inliers(first, second);
+      add_pair(pair, num_inliers, first.size(), figures.by_class[i]);
+      const auto above =
+          std::upper_bound(kAngles_deg.begin() + 1, kAngles_deg.end(), pair.parallax_deg);
+      if (above == kAngles_deg.end()) continue;
+      const auto bin = static_cast<std::size_t>(above - kAngles_deg.begin()) - 1;
+      add_pair(pair, num_inliers, first.size(), figures.by_parallax[bin]);
+    }
+    progress.update(static_cast<int>(i) + 1);
   }
-  const auto add = [&](const std::string& what, std::optional<double> ClassFigures::*value) {
-    for (std::size_t i = 0; i < classes.size(); ++i) {
-      figures.push_back({what + class_name(static_cast<int>(i)), classes[i].*value});
+  return figures;
+}
+
+void add_match_figures(const MatchFigures& matches, std::vector<Figure>& figures) {
+  const auto add = [&figures](const std::string& what, std::vector<double> PairFigures::*values,
+                              const MatchFigures& of) {
+    const auto median = [values](const PairFigures& pairs) {
+      const bool is_enough = (pairs.*values).size() >= kMinPairs;
+      return is_enough ? quantile(pairs.*values, 0.5) : std::nullopt;
+    };
+    for (std::size_t i = 0; i < of.by_parallax.size(); ++i) {
+      figures.push_back(
+          {fmt::format("{}, parallax {}-{} deg", what, kAngles_deg[i], kAngles_deg[i + 1]),
+           median(of.by_parallax[i])});
+    }
+    for (std::size_t i = 0; i < of.by_class.size(); ++i) {
+      figures.push_back(
+          {fmt::format("{}, {}", what, class_name(static_cast<int>(i))), median(of.by_class[i])});
     }
   };
-  add("inliers, ", &ClassFigures::inliers);
-  add("inliers / features, ", &ClassFigures::inlier_ratio);
-  add("overlap, ", &ClassFigures::overlap);
+  add("inliers", &PairFigures::inliers, matches);
+  add("inliers / features", &PairFigures::inlier_ratios, matches);
+  add("overlap", &PairFigures::overlaps, matches);
 }
 
 SourceFigures measure(const std::string& name, const Options& options) {
   const Views views = look_at(name, options);
   SourceFigures source{.name = name, .is_twin = twin::is_twin_spec(name), .figures = {}};
   add_picture_figures(views, source.figures);
-  add_match_figures(name, views, options.num_pairs, source.figures);
+  add_match_figures(match(name, views, options.num_pairs), source.figures);
   return source;
 }
 

@@ -92,9 +92,17 @@ ViewGeometry wall_view(double right_m) {
 
 TEST(ViewPairs, HalfAPictureAsideOverlapsByHalf) {
   // the picture is 3.2 m wide on the wall
-  EXPECT_NEAR(overlap(wall_view(0.0), wall_view(1.6)), 0.5, 0.03);
-  EXPECT_DOUBLE_EQ(overlap(wall_view(0.0), wall_view(0.0)), 1.0);
-  EXPECT_DOUBLE_EQ(overlap(wall_view(0.0), wall_view(4.0)), 0.0);
+  EXPECT_NEAR(shared_view(wall_view(0.0), wall_view(1.6)).overlap, 0.5, 0.03);
+  EXPECT_DOUBLE_EQ(shared_view(wall_view(0.0), wall_view(0.0)).overlap, 1.0);
+  EXPECT_DOUBLE_EQ(shared_view(wall_view(0.0), wall_view(4.0)).overlap, 0.0);
+}
+
+TEST(ViewPairs, ParallaxIsTheAngleBetweenTheDirectionsThatASurfaceIsSeenFrom) {
+  // 0.4 m aside at 2 m: 11.4 degrees for what lies between, less towards the sides
+  const double parallax_deg = shared_view(wall_view(0.0), wall_view(0.4)).parallax_deg;
+  EXPECT_GT(parallax_deg, 9.0);
+  EXPECT_LT(parallax_deg, 11.5);
+  EXPECT_NEAR(shared_view(wall_view(0.0), wall_view(0.0)).parallax_deg, 0.0, 1e-6);
 }
 
 TEST(ViewPairs, PairsFallIntoTheirClassAndAreDrawnAlike) {

@@ -21,6 +21,16 @@ constexpr double kMinOverlap = 0.3;
 constexpr int kDrawsPerPair = 20;
 constexpr std::uint64_t kSeed = 0;
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
+}
+
 double depth_at(const cv::Mat& grid_m, const Eigen::Vector2d& pixel) {
   const long column = std::lround(pixel.x() / kDepthStep_px);
   const long row = std::lround(pixel.y() / kDepthStep_px);
@@ -52,10 +62,7 @@ void add_points(ViewGeometry& view) {
       depths_m.push_back(depth_m);
     }
   }
-  if (depths_m.empty()) return;
-  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
-  std::nth_element(depths_m.begin(), middle, depths_m.end());
-  view.median_depth_m = *middle;
+  if (!depths_m.empty()) view.median_depth_m = median(depths_m);
 }
 
 // Index of the interval that holds the value, or -1.
@@ -91,8 +98,11 @@ std::vector<ViewPair> draw(std::vector<std::pair<int, int>> candidates,
     const auto [first, second] = candidates[i];
     const ViewGeometry& a = views[static_cast<std::size_t>(first)];
     const ViewGeometry& b = views[static_cast<std::size_t>(second)];
-    const double shared = std::min(overlap(a, b), overlap(b, a));
-    if (shared >= kMinOverlap) drawn.push_back({first, second, shared});
+    const SharedView there = shared_view(a, b);
+    const SharedView back = shared_view(b, a);
+    const double overlap = std::min(there.overlap, back.overlap);
+    if (overlap < kMinOverlap) continue;
+    drawn.push_back({first, second, overlap, 0.5 * (there.parallax_deg + back.parallax_deg)});
   }
   return drawn;
 }
@@ -110,11 +120,11 @@ ViewGeometry view_geometry(const core::Frame& frame, const core::Rigid3& world_f
   return view;
 }
 
-double overlap(const ViewGeometry& first, const ViewGeometry& second) {
+SharedView shared_view(const ViewGeometry& first, const ViewGeometry& second) {
   const core::Rigid3 second_from_first =
       core::inverse(second.world_from_camera) * first.world_from_camera;
-  int num_seen = 0;
   int num_known = 0;
+  std::vector<double> parallaxes_deg;
   for (const Eigen::Vector3d& point : first.points_in_camera) {
     const Eigen::Vector3d point_in_second = second_from_first * point;
     const auto pixel = geometry::project(second.camera, point_in_second);
@@ -122,9 +132,12 @@ double overlap(const ViewGeometry& first, const ViewGeometry& second) {
     if (depth_m == 0.0) continue;
     ++num_known;
     const double tolerance_m = kDepthTolerance_m + kDepthToleranceRatio * depth_m;
-    if (depth_m > 0.0 && std::abs(depth_m - point_in_second.z()) <= tolerance_m) ++num_seen;
+    if (depth_m < 0.0 || std::abs(depth_m - point_in_second.z()) > tolerance_m) continue;
+    parallaxes_deg.push_back(angle_deg(second_from_first.rotation * point, point_in_second));
   }
-  return num_known == 0 ? 0.0 : static_cast<double>(num_seen) / num_known;
+  if (parallaxes_deg.empty()) return {};
+  return {.overlap = static_cast<double>(parallaxes_deg.size()) / num_known,
+          .parallax_deg = median(parallaxes_deg)};
 }
 
 int pair_class(const ViewGeometry& first, const ViewGeometry& second) {
@@ -133,11 +146,9 @@ int pair_class(const ViewGeometry& first, const ViewGeometry& second) {
   const core::Rigid3& a = first.world_from_camera;
   const core::Rigid3& b = second.world_from_camera;
   const Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();
-  const double cosine = (a.rotation * forward).dot(b.rotation * forward);
-  const double angle_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
   const int baseline =
       interval_of((a.translation - b.translation).norm() / depth_m, kBaselineRatios);
-  const int angle = interval_of(angle_deg, kAngles_deg);
+  const int angle = interval_of(angle_deg(a.rotation * forward, b.rotation * forward), kAngles_deg);
   return baseline < 0 || angle < 0 ? -1 : 5 * baseline + angle;
 }
 

@@ -25,9 +25,15 @@ inline constexpr int kDepthStep_px = 4;
 // `frame` has a calibrated camera and depth (else ContractError).
 ViewGeometry view_geometry(const core::Frame& frame, const core::Rigid3& world_from_camera);
 
-// Share of what `first` sees that `second` sees too: the depths agree within 5 cm + 4 % (protocol
-// pr-v2). A point that falls where the second depth is unknown does not count.
-double overlap(const ViewGeometry& first, const ViewGeometry& second);
+// What two views have in common.
+struct SharedView {
+  double overlap = 0.0;       // share of what `first` sees that `second` sees too
+  double parallax_deg = 0.0;  // of that, median angle between the two directions it is seen from
+};
+
+// Seen by both: the depths agree within 5 cm + 4 % (protocol pr-v2). A point that falls where the
+// second depth is unknown does not count.
+SharedView shared_view(const ViewGeometry& first, const ViewGeometry& second);
 
 // Limits of the classes of pairs: distance of the camera centres over the median depth (mean of
 // both), and angle between the optical axes.
@@ -43,7 +49,8 @@ std::string class_name(int pair_class);
 struct ViewPair {
   int first = 0;
   int second = 0;
-  double overlap = 0.0;  // the smaller of both ways
+  double overlap = 0.0;       // the smaller of both ways
+  double parallax_deg = 0.0;  // the mean of both ways
 };
 
 // Of each class at most max_pairs, drawn with a fixed seed among those that overlap by at least 0.3
