@@ -1,6 +1,6 @@
-// truth SPEC...: is what the twin building says about itself true? Checks that do not go the way that the truth was
-// made: pixels carried from one frame to another by depth and pose and found there again, inertial samples integrated,
-// loops and impostors seen again by single rays.
+// truth SPEC...: is what the twin building says about itself true? Checks that do not go the way
+// that the truth was made: pixels carried from one frame to another by depth and pose and found
+// there again, inertial samples integrated, loops and impostors seen again by single rays.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -52,7 +52,8 @@ std::optional<double> depth_between(const cv::Mat& depth_m, const Vector2d& pixe
   const double b = pixel.y() - y;
   // inverse depth is linear on a plane
   const double corners[4] = {1.0 / depth_m.at<float>(y, x), 1.0 / depth_m.at<float>(y, x + 1),
-                             1.0 / depth_m.at<float>(y + 1, x), 1.0 / depth_m.at<float>(y + 1, x + 1)};
+                             1.0 / depth_m.at<float>(y + 1, x),
+                             1.0 / depth_m.at<float>(y + 1, x + 1)};
   const auto [low, high] = std::minmax_element(std::begin(corners), std::end(corners));
   if (!(*high < (1.0 + kSmooth) * *low)) return std::nullopt;
   return 1.0 / ((1 - b) * ((1 - a) * corners[0] + a * corners[1]) +
@@ -61,16 +62,18 @@ std::optional<double> depth_between(const cv::Mat& depth_m, const Vector2d& pixe
 
 // Shift of the second picture's patch over the first's, by phase correlation; nothing if the patch
 // holds too little to tell.
-std::optional<double> picture_shift(const cv::Mat& first, const Vector2d& at_first, const cv::Mat& second,
-                                    const Vector2d& at_second) {
+std::optional<double> picture_shift(const cv::Mat& first, const Vector2d& at_first,
+                                    const cv::Mat& second, const Vector2d& at_second) {
   constexpr int kSide = 32;
   constexpr double kMinDeviation = 6.0;
   constexpr double kMinResponse = 0.5;
   cv::Mat a;
   cv::Mat b;
   const cv::Size size(kSide, kSide);
-  cv::getRectSubPix(first, size, {static_cast<float>(at_first.x()), static_cast<float>(at_first.y())}, a);
-  cv::getRectSubPix(second, size, {static_cast<float>(at_second.x()), static_cast<float>(at_second.y())}, b);
+  cv::getRectSubPix(first, size,
+                    {static_cast<float>(at_first.x()), static_cast<float>(at_first.y())}, a);
+  cv::getRectSubPix(second, size,
+                    {static_cast<float>(at_second.x()), static_cast<float>(at_second.y())}, b);
   cv::Scalar mean;
   cv::Scalar deviation;
   cv::meanStdDev(a, mean, deviation);
@@ -86,29 +89,27 @@ std::optional<double> picture_shift(const cv::Mat& first, const Vector2d& at_fir
 }
 
 struct Shot {
-  core::Frame frame;
   cv::Mat grey;
+  cv::Mat depth_m;
   core::Rigid3 world_from_camera;
 };
 
-void carry(const Shot& from, const Shot& to, bool with_picture, Reprojection& errors) {
+void carry(const core::Camera& camera, const Shot& from, const Shot& to, Reprojection& errors) {
   constexpr int kStep_px = 24;
-  const core::Camera& camera = from.frame.rig->cameras.front();
   const core::Rigid3 to_from_from = inverse(to.world_from_camera) * from.world_from_camera;
   for (int y = kStep_px; y + kStep_px < from.grey.rows; y += kStep_px) {
     for (int x = kStep_px; x + kStep_px < from.grey.cols; x += kStep_px) {
-      const double depth_m = from.frame.depth_m->at<float>(y, x);
+      const double depth_m = from.depth_m.at<float>(y, x);
       if (depth_m <= 0.0) continue;
       const Vector3d in_to = to_from_from * point_at(camera, {x, y}, depth_m);
       const auto pixel = geometry::project(camera, in_to);
       if (!pixel) continue;
-      const auto seen_m = depth_between(*to.frame.depth_m, *pixel);
+      const auto seen_m = depth_between(to.depth_m, *pixel);
       if (!seen_m || std::abs(*seen_m - in_to.z()) > 0.05 * in_to.z()) continue;  // hidden there
       const Vector3d back = inverse(to_from_from) * point_at(camera, *pixel, *seen_m);
       if (const auto again = geometry::project(camera, back)) {
         errors.by_depth.push_back((*again - Vector2d(x, y)).norm());
       }
-      if (!with_picture) continue;
       if (const auto shift = picture_shift(from.grey, Vector2d(x, y), to.grey, *pixel)) {
         errors.by_picture.push_back(*shift);
       }
@@ -121,23 +122,30 @@ Reprojection reprojection(const twin::Walkthrough& walk, const twin::WalkTruth& 
   twin::Config config;
   config.ideal_depth = true;
   const twin::Studio studio(walk, config);
+  const core::Camera& camera = walk.rig()->cameras.front();
   const auto shot = [&](int index) {
-    Shot taken{.frame = studio.frame(index), .grey = {}, .world_from_camera = {}};
-    cv::cvtColor(taken.frame.images.front(), taken.grey, cv::COLOR_BGR2GRAY);
+    const twin::Pictures pictures = studio.pictures(index);
+    Shot taken{.grey = {}, .depth_m = *pictures.depth_m, .world_from_camera = {}};
+    cv::cvtColor(pictures.images.front(), taken.grey, cv::COLOR_BGR2GRAY);
     taken.world_from_camera = walk.walk().poses[static_cast<std::size_t>(index)].world_from_camera;
     return taken;
   };
   core::Random random(core::seed_of(walk.spec().seed, "bench.truth", 0));
   Reprojection errors;
   for (int i = 0; i < kNumPairs; ++i) {
-    const int first = static_cast<int>(random.index(static_cast<std::uint64_t>(walk.num_frames() - 1)));
+    const int first =
+        static_cast<int>(random.index(static_cast<std::uint64_t>(walk.num_frames() - 1)));
     const int visit = walk.walk().visit_of_frame[static_cast<std::size_t>(first)];
-    if (visit == twin::kDark || walk.walk().visit_of_frame[static_cast<std::size_t>(first) + 1] != visit) continue;
-    carry(shot(first), shot(first + 1), true, errors);
+    if (visit == twin::kDark ||
+        walk.walk().visit_of_frame[static_cast<std::size_t>(first) + 1] != visit)
+      continue;
+    carry(camera, shot(first), shot(first + 1), errors);
   }
   for (int i = 0; i < kNumPairs && !truth.loops.empty(); ++i) {
     const auto& loop = truth.loops[random.index(truth.loops.size())];
-    carry(shot(loop.query), shot(loop.match), false, errors);
+    Reprojection again;  // light and view may have changed: the pictures are not compared
+    carry(camera, shot(loop.query), shot(loop.match), again);
+    errors.by_depth.insert(errors.by_depth.end(), again.by_depth.begin(), again.by_depth.end());
   }
   return errors;
 }
@@ -172,8 +180,8 @@ InertialCheck inertial_check(const twin::Walkthrough& walk) {
   return {sum / num_values, static_cast<double>(num_within) / num_values};
 }
 
-// Share of what one frame sees that another sees too, by single rays: it lies in the other's picture and nothing
-// stands between.
+// Share of what one frame sees that another sees too, by single rays: it lies in the other's
+// picture and nothing stands between.
 double overlap_by_rays(const twin::Walkthrough& walk, int query, int match) {
   constexpr int kNumColumns = 32;
   constexpr int kNumRows = 24;
@@ -183,13 +191,15 @@ double overlap_by_rays(const twin::Walkthrough& walk, int query, int match) {
   const core::Rigid3& from = poses[static_cast<std::size_t>(query)].world_from_camera;
   const core::Rigid3& to = poses[static_cast<std::size_t>(match)].world_from_camera;
   const auto visit_of = [&](int frame) {
-    return walk.visits()[static_cast<std::size_t>(walk.walk().visit_of_frame[static_cast<std::size_t>(frame)])];
+    return walk.visits()[static_cast<std::size_t>(
+        walk.walk().visit_of_frame[static_cast<std::size_t>(frame)])];
   };
   int num_seen = 0;
   int num_shared = 0;
   for (int row = 0; row < kNumRows; ++row) {
     for (int column = 0; column < kNumColumns; ++column) {
-      const Vector2d pixel((column + 0.5) * c.width_px / kNumColumns - 0.5, (row + 0.5) * c.height_px / kNumRows - 0.5);
+      const Vector2d pixel((column + 0.5) * c.width_px / kNumColumns - 0.5,
+                           (row + 0.5) * c.height_px / kNumRows - 0.5);
       const twin::Ray ray{from.translation.cast<float>(),
                           (from.rotation * geometry::bearing(camera, pixel)).cast<float>()};
       const auto hit = visit_of(query).rays->first_hit(ray);
@@ -198,7 +208,9 @@ double overlap_by_rays(const twin::Walkthrough& walk, int query, int match) {
       const Vector3d point = (ray.origin + hit->reach * ray.direction).cast<double>();
       const Vector3d in_match = inverse(to) * point;
       const auto at = geometry::project(camera, in_match);
-      if (!at || at->x() < -0.5 || at->y() < -0.5 || at->x() > c.width_px - 0.5 || at->y() > c.height_px - 0.5) continue;
+      if (!at || at->x() < -0.5 || at->y() < -0.5 || at->x() > c.width_px - 0.5 ||
+          at->y() > c.height_px - 0.5)
+        continue;
       const twin::Ray back{to.translation.cast<float>(), (point - to.translation).cast<float>()};
       const auto first = visit_of(match).rays->first_hit(back);
       const double tolerance = (0.05 + 0.04 * in_match.z()) / in_match.z();
@@ -208,7 +220,8 @@ double overlap_by_rays(const twin::Walkthrough& walk, int query, int match) {
   return num_seen == 0 ? 0.0 : static_cast<double>(num_shared) / num_seen;
 }
 
-// Of up to 300 pairs: how many keep the promise that both ways' overlap is at least / below a limit.
+// Of up to 300 pairs: how many keep the promise that both ways' overlap is at least / below a
+// limit.
 template <class Pairs, class Keeps>
 std::string promise(const twin::Walkthrough& walk, const Pairs& pairs, const Keeps& keeps) {
   constexpr std::size_t kMost = 300;
@@ -234,10 +247,12 @@ void check(const std::string& text) {
   const auto num_confirmable = std::count_if(truth.loops.begin(), truth.loops.end(),
                                              [](const auto& loop) { return loop.is_confirmable; });
   fmt::print(
-      "| {} | {} | {:.3f} ({}) | {:.3f} ({}) | {:.2f}, {:.1f} % | {} ({} confirmable) | {} | {} | {} |\n", text,
-      walk.num_frames(), median(errors.by_depth), errors.by_depth.size(), median(errors.by_picture),
-      errors.by_picture.size(), inertial.mean_chi_square, 100.0 * inertial.share_within_3_sigma, truth.loops.size(),
-      num_confirmable, promise(walk, truth.loops, sees_the_same), truth.impostors.size(),
+      "| {} | {} | {:.3f} ({}) | {:.3f} ({}) | {:.2f}, {:.1f} % | {} ({} confirmable) | {} | {} | "
+      "{} |\n",
+      text, walk.num_frames(), median(errors.by_depth), errors.by_depth.size(),
+      median(errors.by_picture), errors.by_picture.size(), inertial.mean_chi_square,
+      100.0 * inertial.share_within_3_sigma, truth.loops.size(), num_confirmable,
+      promise(walk, truth.loops, sees_the_same), truth.impostors.size(),
       promise(walk, truth.impostors, sees_nothing_shared));
 }
 
@@ -252,8 +267,10 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     fmt::print(
-        "| walk | frames | pixel error by depth, median (points) | by picture | inertial chi-square per degree of "
-        "freedom, within 3 sigma | loops | of these seen again by rays | impostors | of these nothing shared |\n"
+        "| walk | frames | pixel error by depth, median (points) | by picture | inertial "
+        "chi-square per degree of "
+        "freedom, within 3 sigma | loops | of these seen again by rays | impostors | of these "
+        "nothing shared |\n"
         "|---|---|---|---|---|---|---|---|---|\n");
     for (const auto& spec : specs) samewhere::bench::check(spec);
   } catch (const samewhere::core::InputError& error) {

@@ -3,6 +3,8 @@
 #include <string>
 
 #include <opencv2/core/utility.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include "commands.hpp"
 #include <samewhere/core/errors.hpp>
@@ -49,6 +51,9 @@ int main(int argc, char** argv) {
   using namespace samewhere;
   // parallelism is between stages, and the same bits come out on any number of cores
   cv::setNumThreads(1);
+  // results go to stdout, and nothing else does
+  spdlog::set_default_logger(spdlog::stderr_logger_st("samewhere"));
+  spdlog::set_pattern("%n: %l: %v");
   try {
     return app::run(argc, argv);
   } catch (const core::InputError& error) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -8,10 +9,13 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/report/jpeg.hpp>
+#include <samewhere/twin/contact_sheet.hpp>
 #include <samewhere/twin/dataset.hpp>
-#include <samewhere/twin/spec.hpp>
+#include <samewhere/twin/twin.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -21,6 +25,7 @@ struct TwinCommand {
   std::string out;
   std::string format = "tum";
   ConfigOptions config;
+  std::string sheet;
   bool is_list = false;
 };
 
@@ -36,12 +41,37 @@ void check(const TwinCommand& command) {
   if (command.source.empty()) {
     throw core::InputError("twin: no building was named; expected twin:PRESET or --list");
   }
-  if (command.out.empty()) {
-    throw core::InputError("twin: no folder was named; expected --out DIR, a name that is free");
+  if (command.out.empty() && command.sheet.empty()) {
+    throw core::InputError(
+        "twin: no folder was named; expected --out DIR, a name that is free, or --sheet FILE.jpg");
   }
   if (command.format != "tum" && command.format != "euroc") {
     throw core::InputError(fmt::format("--format {}: expected one of: tum, euroc", command.format));
   }
+}
+
+twin::Written write_folder(const TwinCommand& command, core::Source& source,
+                           const std::optional<twin::SideTables>& tables) {
+  return command.format == "tum" ? twin::write_tum_folder(source, command.out, tables)
+                                 : twin::write_euroc_folder(source, command.out, tables);
+}
+
+int write_walk(const TwinCommand& command, const pipeline::Config& config) {
+  const auto walk =
+      std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
+  if (!command.sheet.empty()) {
+    const cv::Mat sheet = twin::contact_sheet(*walk);
+    core::write_file(command.sheet, report::jpeg_bytes(sheet, sheet.cols));
+    fmt::print("{}: twelve pictures of {}\n", command.sheet, command.source);
+  }
+  if (command.out.empty()) return kDone;
+  const auto source = twin::open_twin(walk, config.twin);
+  const twin::SideTables tables{.truth = walk->truth(), .wheels = walk->wheels()};
+  if (write_folder(command, *source, tables) == twin::Written::kInterrupted) return kInterrupted;
+  fmt::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
+             walk->num_frames(), command.source, tables.truth.loops.size(),
+             tables.truth.impostors.size());
+  return kDone;
 }
 
 int write(const TwinCommand& command) {
@@ -49,10 +79,14 @@ int write(const TwinCommand& command) {
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
+  if (twin::is_twin_spec(config.source)) return write_walk(command, config);
+  if (!command.sheet.empty()) {
+    throw core::InputError(command.source + ": --sheet shows rendered buildings, twin:PRESET");
+  }
   const auto source = pipeline::open_source(config);
-  const auto written = command.format == "tum" ? twin::write_tum_folder(*source, command.out)
-                                               : twin::write_euroc_folder(*source, command.out);
-  if (written == twin::Written::kInterrupted) return kInterrupted;
+  if (write_folder(command, *source, std::nullopt) == twin::Written::kInterrupted) {
+    return kInterrupted;
+  }
   fmt::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);
   return kDone;
 }
@@ -70,6 +104,7 @@ void add_twin_command(CLI::App& app, int& exit_code) {
                   "tum (TUM RGB-D: colour, depth, poses) or euroc (EuRoC: one or two cameras, "
                   "inertial samples, poses)")
       ->capture_default_str();
+  sub->add_option("--sheet", command->sheet, "JPEG file for twelve pictures of the walk");
   sub->add_flag("--list", command->is_list, "print the presets, a line each");
   add_config_options(*sub, command->config);
   sub->footer(
@@ -77,6 +112,7 @@ void add_twin_command(CLI::App& app, int& exit_code) {
       "  samewhere twin --list\n"
       "  samewhere twin 'twin:hotel?seed=3&similarity=0.9' --out hotel --format tum\n"
       "  samewhere twin 'twin:mirror?camera=stereo' --out mirror --format euroc\n"
+      "  samewhere twin 'twin:warehouse?people=5' --sheet warehouse.jpg\n"
       "  samewhere twin twin:office-loop --out short --set twin.num_frames=100");
   sub->callback([command, &exit_code] {
     if (command->is_list) {

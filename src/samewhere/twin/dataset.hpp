@@ -3,38 +3,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <samewhere/core/source.hpp>
+#include <samewhere/twin/truth.hpp>
+#include <samewhere/twin/wheel.hpp>
 
 namespace samewhere::twin {
 
-// What is known about a walk beyond core::Truth, as rows of the files that tell it. Frames are
-// counted from 0.
-struct TruthTables {
-  struct FrameRow {
-    int visit = 0;  // -1: dark
-    std::string room;
-    int floor = 0;
-  };
-  struct LoopRow {
-    int query = 0;
-    int match = 0;
-    double overlap = 0.0;
-    bool is_confirmable = false;
-    std::string object;  // that confirms it; empty: none
-  };
-  struct ImpostorRow {
-    int query = 0;
-    int match = 0;
-    double alike = 0.0;
-  };
-  std::vector<FrameRow> frames;  // one per frame of the source
-  std::vector<LoopRow> loops;
-  std::vector<ImpostorRow> impostors;
-  // num_frames * num_frames, row = query, 255 = all; empty: not known
-  std::vector<std::uint8_t> overlap;
+// What stands beside a recording: it is no part of the formats.
+struct SideTables {
+  WalkTruth truth;
+  std::vector<WheelSample> wheels;  // empty: no robot
 };
 
 enum class Written : std::uint8_t { kComplete, kInterrupted };
@@ -42,9 +22,10 @@ enum class Written : std::uint8_t { kComplete, kInterrupted };
 // Each of these writes all frames of the source, from the first, as a folder that other systems
 // read. It grows under the name `folder`.partial and is renamed when it is complete, so that what
 // bears the final name is whole; after an error or an interrupt (core/interrupt.hpp) nothing is
-// left. Beside the format's own files stand, where `truth` is given: frames.csv (frame, stamp_s,
+// left. Beside the format's own files stand, where `tables` are given: frames.csv (frame, stamp_s,
 // visit, room, floor), loops.csv (query, match, overlap, confirmable, object), impostors.csv
-// (query, match, alike), overlap.pgm; and same_place.pgm where the source knows its places (0
+// (query, match, alike), overlap.pgm unless the walk is long, wheels.csv (stamp_s, forward_m,
+// turned_rad) if a robot walked; and same_place.pgm where the source knows its places (0
 // different, 1 same, 2 near). Throws InputError if the folder is there already or cannot be
 // written, and whatever source.next() throws.
 
@@ -52,13 +33,13 @@ enum class Written : std::uint8_t { kComplete, kInterrupted };
 // groundtruth.txt, accelerometer.txt if there are inertial samples; stamps with six decimals. Our
 // camera.txt (input/camera_file.hpp). Of camera 0 alone: the format knows no other.
 Written write_tum_folder(core::Source& source, const std::filesystem::path& folder,
-                         const std::optional<TruthTables>& truth = std::nullopt);
+                         const std::optional<SideTables>& tables = std::nullopt);
 
 // EuRoC (Burri et al. 2016): mav0 with body.yaml, cam0, cam1 and so on, imu0 if the rig has one,
 // state_groundtruth_estimate0 (the body's pose at each frame; velocities are central differences,
 // biases are not known and 0); stamps in whole nanoseconds. The format knows no depth. Pictures
 // have as many channels as the source's. Throws InputError too if the source is not calibrated.
 Written write_euroc_folder(core::Source& source, const std::filesystem::path& folder,
-                           const std::optional<TruthTables>& truth = std::nullopt);
+                           const std::optional<SideTables>& tables = std::nullopt);
 
 }  // namespace samewhere::twin

@@ -157,7 +157,7 @@ void write_poses(const PartialFolder& out, const core::Trajectory& trajectory,
 }  // namespace
 
 Written write_euroc_folder(core::Source& source, const std::filesystem::path& folder,
-                           const std::optional<TruthTables>& truth) {
+                           const std::optional<SideTables>& tables) {
   PartialFolder out(folder);
   Lists lists;
   const std::string name = source.info().name;
@@ -172,7 +172,7 @@ Written write_euroc_folder(core::Source& source, const std::filesystem::path& fo
   write_imu(out, lists);
   write_poses(out, known.trajectory, *lists.rig);
   out.write("mav0/body.yaml", "comment: samewhere\n");
-  write_truth(out, lists.stamps_s, known.places, truth);
+  write_truth(out, lists.stamps_s, known.places, tables);
   out.finish();
   return Written::kComplete;
 }

@@ -40,8 +40,7 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string frames_csv(const std::vector<TruthTables::FrameRow>& frames,
-                       const std::vector<double>& stamps_s) {
+std::string frames_csv(const std::vector<FrameTruth>& frames, const std::vector<double>& stamps_s) {
   std::string text = "frame,stamp_s,visit,room,floor\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     fmt::format_to(std::back_inserter(text), "{},{:.9f},{},{},{}\n", i, stamps_s[i],
@@ -50,7 +49,7 @@ std::string frames_csv(const std::vector<TruthTables::FrameRow>& frames,
   return text;
 }
 
-std::string loops_csv(const std::vector<TruthTables::LoopRow>& loops) {
+std::string loops_csv(const std::vector<TrueLoop>& loops) {
   std::string text = "query,match,overlap,confirmable,object\n";
   for (const auto& loop : loops) {
     fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{},{}\n", loop.query, loop.match,
@@ -59,10 +58,19 @@ std::string loops_csv(const std::vector<TruthTables::LoopRow>& loops) {
   return text;
 }
 
-std::string impostors_csv(const std::vector<TruthTables::ImpostorRow>& impostors) {
+std::string impostors_csv(const std::vector<Impostor>& impostors) {
   std::string text = "query,match,alike\n";
   for (const auto& pair : impostors) {
     fmt::format_to(std::back_inserter(text), "{},{},{:.4f}\n", pair.query, pair.match, pair.alike);
+  }
+  return text;
+}
+
+std::string wheels_csv(const std::vector<WheelSample>& wheels) {
+  std::string text = "stamp_s,forward_m,turned_rad\n";
+  for (const auto& sample : wheels) {
+    fmt::format_to(std::back_inserter(text), "{:.9f},{:.9f},{:.9f}\n", sample.stamp_s,
+                   sample.forward_m, sample.turned_rad);
   }
   return text;
 }
@@ -119,14 +127,16 @@ Written write_each_frame(core::Source& source,
 
 void write_truth(const PartialFolder& out, const std::vector<double>& stamps_s,
                  const std::optional<core::PlaceTruthMatrix>& places,
-                 const std::optional<TruthTables>& truth) {
+                 const std::optional<SideTables>& tables) {
   if (places) out.write("same_place.pgm", pgm(places->values, stamps_s.size(), 2));
-  if (!truth) return;
-  core::require(truth->frames.size() == stamps_s.size(), "there is one row of truth per frame");
-  out.write("frames.csv", frames_csv(truth->frames, stamps_s));
-  out.write("loops.csv", loops_csv(truth->loops));
-  out.write("impostors.csv", impostors_csv(truth->impostors));
-  if (!truth->overlap.empty()) out.write("overlap.pgm", pgm(truth->overlap, stamps_s.size(), 255));
+  if (!tables) return;
+  const WalkTruth& truth = tables->truth;
+  core::require(truth.frames.size() == stamps_s.size(), "there is one row of truth per frame");
+  out.write("frames.csv", frames_csv(truth.frames, stamps_s));
+  out.write("loops.csv", loops_csv(truth.loops));
+  out.write("impostors.csv", impostors_csv(truth.impostors));
+  if (!truth.overlap.empty()) out.write("overlap.pgm", pgm(truth.overlap, stamps_s.size(), 255));
+  if (!tables->wheels.empty()) out.write("wheels.csv", wheels_csv(tables->wheels));
 }
 
 }  // namespace samewhere::twin

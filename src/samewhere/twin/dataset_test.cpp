@@ -97,17 +97,21 @@ TEST_F(Dataset, AEurocFolderHoldsTheFilesOfTheFormat) {
 
 TEST_F(Dataset, TruthIsWrittenAsTables) {
   TestSource source(2, 1, 1);
-  TruthTables truth;
+  SideTables tables;
+  WalkTruth& truth = tables.truth;
   truth.frames = {{0, "corridor 1", 0}, {1, "a \"lab\", say", -1}};
+  tables.wheels = {{0.02, 0.01, -0.001}};
   truth.loops = {{1, 0, 0.75, true, "door 12"}, {1, 0, 0.4, false, ""}};
   truth.overlap = {255, 10, 13, 255};
-  ASSERT_EQ(write_tum_folder(source, target(), truth), Written::kComplete);
+  ASSERT_EQ(write_tum_folder(source, target(), tables), Written::kComplete);
   EXPECT_EQ(core::read_file(target() / "frames.csv"),
             "frame,stamp_s,visit,room,floor\n0,2.000000000,0,corridor 1,0\n"
             "1,2.066666667,1,\"a \"\"lab\"\", say\",-1\n");
   EXPECT_EQ(core::read_file(target() / "loops.csv"),
             "query,match,overlap,confirmable,object\n1,0,0.7500,1,door 12\n1,0,0.4000,0,\n");
   EXPECT_EQ(core::read_file(target() / "impostors.csv"), "query,match,alike\n");
+  EXPECT_EQ(core::read_file(target() / "wheels.csv"),
+            "stamp_s,forward_m,turned_rad\n0.020000000,0.010000000,-0.001000000\n");
   EXPECT_EQ(core::read_file(target() / "overlap.pgm"), "P5\n2 2\n255\n\xff\x0a\x0d\xff");
 }
 

@@ -55,7 +55,7 @@ void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists)
 }  // namespace
 
 Written write_tum_folder(core::Source& source, const std::filesystem::path& folder,
-                         const std::optional<TruthTables>& truth) {
+                         const std::optional<SideTables>& tables) {
   PartialFolder out(folder);
   Lists lists;
   const auto take = [&](const core::Frame& frame) { add_frame(out, frame, lists); };
@@ -76,7 +76,7 @@ Written write_tum_folder(core::Source& source, const std::filesystem::path& fold
                           core::tum_text(known.trajectory)));
   }
   if (!lists.camera.empty()) out.write("camera.txt", lists.camera);
-  write_truth(out, lists.stamps_s, known.places, truth);
+  write_truth(out, lists.stamps_s, known.places, tables);
   out.finish();
   return Written::kComplete;
 }

@@ -5,10 +5,10 @@
 
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/camera.hpp>
-#include <samewhere/twin/walkthrough.hpp>
 #include <samewhere/twin/people.hpp>
 #include <samewhere/twin/renderer.hpp>
 #include <samewhere/twin/test_room.hpp>
+#include <samewhere/twin/walkthrough.hpp>
 
 namespace samewhere::twin {
 namespace {

@@ -1,7 +1,5 @@
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include <samewhere/core/random.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/depth_sensor.hpp>
@@ -60,37 +58,30 @@ cv::Mat Studio::picture(const View& view, int index, int camera) const {
   const double stamp_s = walk_.stamp_s(index);
   const double half_s = 0.5 * exposure.duration_s;
   const core::Rigid3& body_from_camera = walk_.rig()->body_from_camera[which];
-  const CameraMotion motion =
-      motion_between(walk_.motion().world_from_body(stamp_s - half_s) * body_from_camera,
-                     walk_.motion().world_from_body(stamp_s + half_s) * body_from_camera,
-                     exposure.duration_s);
+  const CameraMotion motion = motion_between(
+      walk_.motion().world_from_body(stamp_s - half_s) * body_from_camera,
+      walk_.motion().world_from_body(stamp_s + half_s) * body_from_camera, exposure.duration_s);
   const cv::Mat blurred =
       blur_by_motion(view, walk_.rig()->cameras[which], motion, exposure.duration_s);
   const auto picture = static_cast<std::uint64_t>(2 * index + camera);
   return photograph(blurred, exposure, core::seed_of(walk_.spec().seed, "twin.picture", picture));
 }
 
-core::Frame Studio::frame(int index) const {
-  const std::span<const core::ImuSample> imu = walk_.imu_since_last(index);
-  core::Frame frame{.id = core::FrameId(static_cast<std::uint64_t>(index)),
-                    .stamp_s = walk_.stamp_s(index),
-                    .name = fmt::format("{} frame {}", walk_.name(), index),
-                    .rig = walk_.rig(),
-                    .exposure_s = exposures_[static_cast<std::size_t>(index)].duration_s,
-                    .imu_since_last = {imu.begin(), imu.end()}};
+Pictures Studio::pictures(int index) const {
+  Pictures pictures;
   const int num_cameras = static_cast<int>(walk_.rig()->cameras.size());
   for (int camera = 0; camera < num_cameras; ++camera) {
     const View seen = view(index, camera);
-    frame.images.push_back(picture(seen, index, camera));
+    pictures.images.push_back(picture(seen, index, camera));
     if (camera > 0 || walk_.spec().sensors != Sensors::kRgbd) continue;
     const std::uint64_t seed =
         core::seed_of(walk_.spec().seed, "twin.depth", static_cast<std::uint64_t>(index));
     // a covered lens sees none of the building, whichever visit's it is
     const int visit = std::max(walk_.walk().visit_of_frame[static_cast<std::size_t>(index)], 0);
     const Building& building = *walk_.visits()[static_cast<std::size_t>(visit)].building;
-    frame.depth_m = has_ideal_depth_ ? seen.depth_m : measure_depth(seen, building, seed);
+    pictures.depth_m = has_ideal_depth_ ? seen.depth_m : measure_depth(seen, building, seed);
   }
-  return frame;
+  return pictures;
 }
 
 }  // namespace samewhere::twin

@@ -3,8 +3,8 @@
 #include <deque>
 #include <vector>
 
-#include <samewhere/core/frame.hpp>
 #include <samewhere/twin/exposure.hpp>
+#include <samewhere/twin/picture_cache.hpp>
 #include <samewhere/twin/renderer.hpp>
 #include <samewhere/twin/walkthrough.hpp>
 
@@ -16,19 +16,20 @@ class Studio {
   // The walk must outlive it. Computes the light of each visit: some seconds for a large building.
   Studio(const Walkthrough& walk, const Config& config);
 
-  // Pictures and depth of a frame; of the same frame always the same. Any number of threads may ask
-  // at once.
-  core::Frame frame(int index) const;
+  // Of the same frame always the same. Any number of threads may ask at once.
+  Pictures pictures(int index) const;
 
  private:
-  const Renderer& renderer_of(int visit) const { return renderers_[static_cast<std::size_t>(visit)]; }
+  const Renderer& renderer_of(int visit) const {
+    return renderers_[static_cast<std::size_t>(visit)];
+  }
   View view(int index, int camera) const;
   cv::Mat picture(const View& view, int index, int camera) const;
   std::vector<float> mean_radiances() const;
 
   const Walkthrough& walk_;
   bool has_ideal_depth_;
-  std::deque<Renderer> renderers_;  // one per visit
+  std::deque<Renderer> renderers_;   // one per visit
   std::vector<Exposure> exposures_;  // one per frame
 };
 

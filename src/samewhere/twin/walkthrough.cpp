@@ -23,11 +23,6 @@ std::shared_ptr<const core::Rig> rig_for(const Spec& spec) {
   return std::make_shared<const core::Rig>(std::move(rig));
 }
 
-Route at_speed(Route route, double ratio) {
-  route.speed_m_s *= ratio;
-  return route;
-}
-
 Walk walk_of(const Motion& motion, int num_frames) {
   Walk walk{.poses = motion.frames(kFrameRate_hz), .visit_of_frame = {}};
   if (num_frames > 0) {
@@ -51,7 +46,7 @@ Walkthrough::Walkthrough(const Spec& spec, const Config& config)
     : spec_(spec),
       name_(fmt::format("{}-seed{}", spec.preset, spec.seed)),
       world_(build_world(spec)),
-      motion_(at_speed(world_.route, spec.speed), core::seed_of(spec.seed, "twin.motion", 0)),
+      motion_(world_.route, core::seed_of(spec.seed, "twin.motion", 0)),
       rig_(rig_for(spec)),
       walk_(walk_of(motion_, config.num_frames)),
       people_(people_in(world_, spec)),
@@ -73,6 +68,16 @@ std::span<const core::ImuSample> Walkthrough::imu_since_last(int frame) const {
   };
   const auto first = frame == 0 ? imu_.begin() : first_after(stamp_s(frame - 1));
   return {first, first_after(stamp_s(frame))};
+}
+
+core::Frame Walkthrough::frame_without_pictures(int index) const {
+  const std::span<const core::ImuSample> imu = imu_since_last(index);
+  return {.id = core::FrameId(static_cast<std::uint64_t>(index)),
+          .stamp_s = stamp_s(index),
+          .name = fmt::format("{} frame {}", name_, index),
+          .rig = rig_,
+          .images = {},
+          .imu_since_last = {imu.begin(), imu.end()}};
 }
 
 std::vector<WheelSample> Walkthrough::wheels() const {

@@ -37,14 +37,17 @@ class Walkthrough {
   const std::vector<Visit>& visits() const { return visits_; }
   const std::vector<Person>& people() const { return people_; }
 
-  // Measured since the frame before, that frame's own moment excluded; of frame 0 the first sample.
-  std::span<const core::ImuSample> imu_since_last(int frame) const;
+  // A frame that has everything but its pictures.
+  core::Frame frame_without_pictures(int index) const;
   // Of the whole walk; empty if no robot walks it.
   std::vector<WheelSample> wheels() const;
   // Exact; takes some seconds.
   WalkTruth truth() const;
 
  private:
+  // Measured since the frame before, that frame's own moment excluded; of frame 0 the first sample.
+  std::span<const core::ImuSample> imu_since_last(int frame) const;
+
   Spec spec_;
   std::string name_;
   World world_;
