@@ -81,8 +81,8 @@ class SensorNoise {
   float deviation(float signal) const { return std::sqrt(shot_ * signal + read_); }
 
  private:
-  static constexpr float kShotNoise = 2.3e-4F;  // one over the photons that are white
-  static constexpr float kReadNoise = 7e-4F;
+  static constexpr float kShotNoise = 1.0e-4F;  // one over the photons that are white
+  static constexpr float kReadNoise = 5e-4F;
 
   float shot_;  // variance over signal
   float read_;  // variance

@@ -350,6 +350,11 @@ void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
                   floor_m + half_m,
                   floor_m + half_m + 2.7F};
   furnisher_.add_window({back, 0.5F * kWidth_m}, Daylight::kBlinds);
+  const float ends_m[2] = {head_m, head_m + kLanding_m};
+  furnisher_.add_framed_poster(
+      {{{right_m, ends_m[1]}, {right_m, ends_m[0]}, back.floor_m, back.ceiling_m}, 0.65F});
+  furnisher_.add_notice_board(
+      {{{left_m, ends_m[0]}, {left_m, ends_m[1]}, back.floor_m, back.ceiling_m}, 0.65F});
   furnisher_.add_ceiling_lamp({0.5F * (left_m + right_m), head_m + 0.5F * kLanding_m}, {1.2F, 0.3F},
                               back.ceiling_m);
   // on the ceiling of a step in the middle of each flight

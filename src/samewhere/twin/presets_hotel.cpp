@@ -41,7 +41,12 @@ Storey add_storey(Plan& plan, int floor) {
 int add_stair(Plan& plan, int floor) {
   const float z_m = u_stair::kStorey_m * static_cast<float>(floor);
   const int unit = plan.add_unit(1, {.origin_m = {0.0F, 0.0F, z_m}});
-  add_u_stair(plan, {.name = "stairs", .floor = floor, .unit = unit, .ground = FloorFinish::kTiles},
+  add_u_stair(plan,
+              {.name = "stairs",
+               .floor = floor,
+               .unit = unit,
+               .walls = WallFinish::kBrick,
+               .ground = FloorFinish::kTiles},
               kStairCorner_m);
   return unit;
 }
@@ -52,7 +57,7 @@ void furnish_storey(Draft& draft, const Storey& storey, int floor) {
   const auto doors = Use::kDoors;
   dresser.dress(storey.corridor,
                 {.sides = {Use::kWindows, doors, Use::kBare, doors}, .max_depth_m = 0.05F});
-  dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kNothing, Use::kBare, Use::kBare}});
+  dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kNothing, Use::kBare, Use::kPlain}});
   Furnisher& furnisher = dresser.furnisher();
   furnisher.add_floor_number({dresser.wall_of(storey.landing, 3), 0.6F}, floor);
   const Wall lift = dresser.wall_of(storey.landing, 1);
