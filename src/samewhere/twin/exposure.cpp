@@ -9,7 +9,7 @@ namespace {
 // Shutter first: a short one blurs less, gain costs noise.
 Exposure exposure_of(float signal_per_radiance) {
   constexpr float kMinDuration_s = 0.002F;
-  constexpr float kMaxDuration_s = 0.015F;
+  constexpr float kMaxDuration_s = 0.010F;
   constexpr float kMaxGain = 24.0F;
   const float needed_s =
       signal_per_radiance / Exposure{.duration_s = 1.0F, .gain = 1.0F}.signal_per_radiance();
@@ -21,7 +21,7 @@ Exposure exposure_of(float signal_per_radiance) {
 
 std::vector<Exposure> automatic_exposures(std::span<const float> mean_radiances,
                                           double frame_rate_hz) {
-  constexpr float kMeanSignal = 0.36F;
+  constexpr float kMeanSignal = 0.30F;
   constexpr double kLag_s = 0.4;
   const auto step = static_cast<float>(1.0 - std::exp(-1.0 / (kLag_s * frame_rate_hz)));
   std::vector<Exposure> exposures;

@@ -19,7 +19,7 @@ struct Exposure {
 
 // What an automatic exposure does on a walk past these mean radiances (Renderer::mean_radiance),
 // one per frame: it brings their mean to a middle grey, and lags behind as cameras do; the first
-// frame is settled. The shutter opens up to 15 ms, what is missing then is made up by gain. Frames
+// frame is settled. The shutter opens up to 10 ms, what is missing then is made up by gain. Frames
 // without light (0) leave it as it is.
 std::vector<Exposure> automatic_exposures(std::span<const float> mean_radiances,
                                           double frame_rate_hz);

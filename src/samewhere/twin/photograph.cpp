@@ -21,7 +21,7 @@ class ToneCurve {
               ? light
               : kShoulder + (1.0F - kShoulder) *
                                 (1.0F - std::exp((kShoulder - light) / (1.0F - kShoulder)));
-      levels_[i] = 255.0F * gamma_coded(rolled);
+      levels_[i] = 255.0F * with_contrast(gamma_coded(rolled));
     }
   }
 
@@ -38,15 +38,21 @@ class ToneCurve {
     return light < 0.0031308F ? 12.92F * light : 1.055F * std::pow(light, 1.0F / 2.4F) - 0.055F;
   }
 
+  // as cameras do: darker shades, lighter lights
+  static float with_contrast(float level) {
+    constexpr float kStrength = 0.6F;
+    return lerp(level, smoothstep(level), kStrength);
+  }
+
   static constexpr float kShoulder = 0.7F;
   static constexpr float kStepsPerUnit = 4096.0F;
   std::array<float, 16384> levels_{};
 };
 
-// A row of the picture after the lens: a bell three pixels wide, [1 14 1] / 16 along rows and
+// A row of the picture after the lens: a bell three pixels wide, [1 23 1] / 25 along rows and
 // columns.
 void blur_row(const cv::Mat& radiance, int y, std::vector<cv::Vec3f>& result) {
-  constexpr float kSide = 0.0625F;
+  constexpr float kSide = 0.04F;
   constexpr float kMiddle = 1.0F - 2.0F * kSide;
   const auto* const above = radiance.ptr<cv::Vec3f>(std::max(y - 1, 0));
   const auto* const here = radiance.ptr<cv::Vec3f>(y);
@@ -81,8 +87,8 @@ class SensorNoise {
   float deviation(float signal) const { return std::sqrt(shot_ * signal + read_); }
 
  private:
-  static constexpr float kShotNoise = 1.0e-4F;  // one over the photons that are white
-  static constexpr float kReadNoise = 5e-4F;
+  static constexpr float kShotNoise = 6e-5F;  // one over the photons that are white
+  static constexpr float kReadNoise = 3e-4F;
 
   float shot_;  // variance over signal
   float read_;  // variance
