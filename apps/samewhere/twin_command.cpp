@@ -26,6 +26,7 @@ struct TwinCommand {
   std::string format = "tum";
   ConfigOptions config;
   std::string sheet;
+  std::string similarity_sheet;
   bool is_list = false;
 };
 
@@ -37,11 +38,20 @@ void print_presets() {
   }
 }
 
+bool has_sheet(const TwinCommand& command) {
+  return !command.sheet.empty() || !command.similarity_sheet.empty();
+}
+
+void write_sheet(const std::string& file, const cv::Mat& sheet) {
+  core::write_file(file, report::jpeg_bytes(sheet, sheet.cols));
+  fmt::print("{}\n", file);
+}
+
 void check(const TwinCommand& command) {
   if (command.source.empty()) {
     throw core::InputError("twin: no building was named; expected twin:PRESET or --list");
   }
-  if (command.out.empty() && command.sheet.empty()) {
+  if (command.out.empty() && !has_sheet(command)) {
     throw core::InputError(
         "twin: no folder was named; expected --out DIR, a name that is free, or --sheet FILE.jpg");
   }
@@ -59,10 +69,9 @@ twin::Written write_folder(const TwinCommand& command, core::Source& source,
 int write_walk(const TwinCommand& command, const pipeline::Config& config) {
   const auto walk =
       std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
-  if (!command.sheet.empty()) {
-    const cv::Mat sheet = twin::contact_sheet(*walk);
-    core::write_file(command.sheet, report::jpeg_bytes(sheet, sheet.cols));
-    fmt::print("{}: twelve pictures of {}\n", command.sheet, command.source);
+  if (!command.sheet.empty()) write_sheet(command.sheet, twin::contact_sheet(*walk));
+  if (!command.similarity_sheet.empty()) {
+    write_sheet(command.similarity_sheet, twin::similarity_sheet(walk->spec()));
   }
   if (command.out.empty()) return kDone;
   const auto source = twin::open_twin(walk, config.twin);
@@ -80,8 +89,8 @@ int write(const TwinCommand& command) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (twin::is_twin_spec(config.source)) return write_walk(command, config);
-  if (!command.sheet.empty()) {
-    throw core::InputError(command.source + ": --sheet shows rendered buildings, twin:PRESET");
+  if (has_sheet(command)) {
+    throw core::InputError(command.source + ": a sheet shows rendered buildings, twin:PRESET");
   }
   const auto source = pipeline::open_source(config);
   if (write_folder(command, *source, std::nullopt) == twin::Written::kInterrupted) {
@@ -105,6 +114,8 @@ void add_twin_command(CLI::App& app, int& exit_code) {
                   "inertial samples, poses)")
       ->capture_default_str();
   sub->add_option("--sheet", command->sheet, "JPEG file for twelve pictures of the walk");
+  sub->add_option("--similarity-sheet", command->similarity_sheet,
+                  "JPEG file for one place and its twin at similarity 0, 0.5, 0.9 and 1");
   sub->add_flag("--list", command->is_list, "print the presets, a line each");
   add_config_options(*sub, command->config);
   sub->footer(

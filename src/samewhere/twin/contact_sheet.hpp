@@ -2,6 +2,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <samewhere/twin/spec.hpp>
 #include <samewhere/twin/walkthrough.hpp>
 
 namespace samewhere::twin {
@@ -9,5 +10,10 @@ namespace samewhere::twin {
 // Twelve pictures of a walk, evenly spread in time from first to last, in rows of four, each 320 x
 // 240. BGR, 8 bits.
 cv::Mat contact_sheet(const Walkthrough& walk);
+
+// The same place at similarity 0, 0.5, 0.9 and 1, from left to right, above its twin: an impostor
+// pair of the walk that is nearly the most alike at similarity 1 and shows much. Each picture 320 x
+// 240; BGR, 8 bits. Throws InputError if the building has no twins.
+cv::Mat similarity_sheet(const Spec& spec);
 
 }  // namespace samewhere::twin
