@@ -27,7 +27,7 @@ void add_eval_command(CLI::App& app) {
       "count accepted loops between floors; a list `image floor clip`, as the run's source");
   sub->footer(
       "Examples:\n"
-      "  samewhere eval runs/office-loop\n"
+      "  samewhere eval runs/twin-corridors\n"
       "  samewhere eval runs/walk.txt --walk tower/walk.txt");
   sub->callback([command] {
     print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder)

@@ -27,7 +27,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "samewhere " SAMEWHERE_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "`samewhere COMMAND --help` shows examples. Start with: samewhere run twin:office-loop");
+      "`samewhere COMMAND --help` shows examples. Start with: samewhere run twin:twin-corridors");
   int exit_code = kDone;
   add_run_command(app, exit_code);
   add_loops_command(app, exit_code);

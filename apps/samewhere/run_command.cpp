@@ -132,7 +132,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                      Work::kSlam, exit_code)
       ->footer(
           "Examples:\n"
-          "  samewhere run twin:office-loop --out runs/demo     the built-in world, no download\n"
+          "  samewhere run twin:twin-corridors --out runs/demo  the built-in world, no download\n"
           "  samewhere run ~/data/fr1_room                      a TUM RGB-D folder with "
           "camera.txt\n"
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed");

@@ -35,7 +35,17 @@ TEST_F(Twin, ListNamesThePresetsWithALineEach) {
   const Outcome outcome = run("twin --list");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out.rfind("twin:office-loop ", 0), 0U) << outcome.out;
-  EXPECT_GE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1);
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 8);
+}
+
+TEST_F(Twin, ASheetShowsTheWalkAndABuildingWithoutTwinsHasNoneToShow) {
+  const Outcome sheet = run("twin 'twin:office-loop?seed=2' --sheet " + quoted(path("sheet.jpg")));
+  ASSERT_EQ(sheet.exit_code, 0) << sheet.err;
+  EXPECT_EQ(core::read_file(path("sheet.jpg")).substr(0, 3), "\xff\xd8\xff");
+  const Outcome none =
+      run("twin twin:office-loop --set twin.num_frames=3 --similarity-sheet x.jpg");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("has a twin"), std::string::npos) << none.err;
 }
 
 TEST_F(Twin, ATumFolderPassesTheFormatCheckAndRuns) {
