@@ -49,7 +49,8 @@ std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
     for (float v = 0.5F; v < num_pieces.y(); v += 1.0F) {
       for (float u = 0.5F; u < num_pieces.x(); u += 1.0F) {
         const Eigen::Vector3f position = r.at(Eigen::Vector2f(u, v).cwiseProduct(piece_m));
-        emitters.push_back({{position + kOffSurface_m * r.normal(), r.normal()}, power});
+        emitters.push_back(
+            {{position + kOffSurface_m * r.normal(), r.normal()}, power, piece_m.prod()});
       }
     }
   }
@@ -182,6 +183,14 @@ void for_each_new_point(const SurfaceColours& colours, int r, const Steps& steps
   }
 }
 
+// How much of what one sees a surface at this distance fills at most, roughly: as a disc. A ray
+// stands for an equal share of what there is to see; a thing that fills less of it, a sign or a
+// leaf, must not count for all of that, or it paints a blotch wherever a ray happens to meet it.
+float share_filled(const Rectangle& r, float distance_m) {
+  const float area_m2 = r.size_m.prod();
+  return area_m2 / (kPi * distance_m * distance_m + area_m2);
+}
+
 // What follows from points that are known already.
 std::optional<Colour> known_value(SurfaceColours& colours, int r, const Eigen::Array2i& at,
                                   const Eigen::Array2i& coarser) {
@@ -282,8 +291,8 @@ Colour Light::light_from(const Emitter& emitter, const SurfacePoint& point) cons
       point.normal.dot(to_emitter) * -emitter.at.normal.dot(to_emitter) / squared_m2;
   if (point.normal.dot(to_emitter) <= 0.0F || cosines <= 0.0F) return Colour::Zero();
   if (rays_.is_blocked({point.position, to_emitter})) return Colour::Zero();
-  constexpr float kPieceSize_m2 = 0.02F;  // tames pieces very close by
-  return emitter.power * (cosines * window / (squared_m2 + kPieceSize_m2));
+  // as a disc: however close it is, what it sends is never brighter than it is itself
+  return emitter.power * (cosines * window / (squared_m2 + emitter.area_m2 / kPi));
 }
 
 Colour Light::light_from(const std::vector<Emitter>& emitters, const SurfacePoint& point) const {
@@ -300,14 +309,22 @@ Colour Light::gathered(const SurfacePoint& point, std::span<const Eigen::Vector3
   for (std::size_t i = 0; i < around_z.size(); ++i) directions[i] = axes * around_z[i];
   rays_.first_hits(point.position, std::span(directions).first(around_z.size()), hits);
   Colour sum = Colour::Zero();
+  float sum_weights = 0.0F;
+  const float ray_share = 1.0F / static_cast<float>(around_z.size());
   for (std::size_t i = 0; i < around_z.size(); ++i) {
-    if (hits[i].rectangle < 0) continue;
+    if (hits[i].rectangle < 0) {
+      sum_weights += 1.0F;
+      continue;
+    }
     const Rectangle& seen = rectangles_[static_cast<std::size_t>(hits[i].rectangle)];
+    const float weight = std::min(1.0F, share_filled(seen, hits[i].reach) / ray_share);
+    sum_weights += weight;
     if (is_emitting(seen.material)) continue;  // direct light already
     const Eigen::Vector3f position = point.position + hits[i].reach * directions[i];
-    sum += mean_reflectance(seen.material) * light.at(hits[i].rectangle, seen.right_up_m(position));
+    sum += weight * mean_reflectance(seen.material) *
+           light.at(hits[i].rectangle, seen.right_up_m(position));
   }
-  return sum / static_cast<float>(around_z.size());
+  return sum / sum_weights;
 }
 
 Colour Light::falling_on(const SurfacePoint& point) const {

@@ -18,6 +18,7 @@ struct SurfacePoint {
 struct Emitter {
   SurfacePoint at;
   Colour power = Colour::Zero();  // radiance times area over pi
+  float area_m2 = 0.0F;
 };
 
 // How much light falls on every surface: from lamps and windows with soft shadows, and by way of

@@ -58,6 +58,31 @@ TEST(Light, ABoardInTheWayCastsItsShadow) {
   EXPECT_LT(edge, 0.9F * light.at(TestRoom::kFloor, {3.5F, 2.0F})[0]) << "soft";
 }
 
+// Rays that happen to meet the brightly lit sign must not paint its colour onto the walls.
+TEST(Light, ASmallSignUnderALampLeavesNoBlotchesOfItsColour) {
+  TestRoom room(Colour::Constant(0.6F));
+  const Colour green(0.1F, 0.6F, 0.1F);
+  const Material paint{.finish = Finish::kPaint, .colour = green, .second = green};
+  const Eigen::Vector3f x = Eigen::Vector3f::UnitX();
+  const Eigen::Vector3f z = Eigen::Vector3f::UnitZ();
+  room.add({-0.18F, -0.01F, 2.72F}, x, z, {0.36F, 0.16F}, paint);
+  room.add({0.18F, 0.01F, 2.72F}, -x, z, {0.36F, 0.16F}, paint);
+  const RayScene rays(room.building.rectangles);
+  const Light light(room.building.rectangles, rays);
+  constexpr int kWall = 2;
+  constexpr float kStep_m = 0.1F;
+  for (float up_m = 0.3F; up_m < 2.7F; up_m += kStep_m) {
+    for (float right_m = 0.3F; right_m < 5.7F; right_m += kStep_m) {
+      const Colour here = light.at(kWall, {right_m, up_m});
+      const Colour before = light.at(kWall, {right_m - kStep_m, up_m});
+      const Colour after = light.at(kWall, {right_m + kStep_m, up_m});
+      EXPECT_NEAR(here[1] / here[2], 1.0F, 0.03F) << "hue at " << right_m << ", " << up_m;
+      EXPECT_NEAR(0.5F * (before[1] + after[1]) / here[1], 1.0F, 0.03F)
+          << "bump at " << right_m << ", " << up_m;
+    }
+  }
+}
+
 TEST(Light, AThingInTheRoomIsLitLikeTheSurfaceItLiesOn) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
