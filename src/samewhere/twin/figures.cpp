@@ -50,62 +50,41 @@ class Body {
   Body(const Look& look, Shapes& shapes)
       : look_(look), shapes_(shapes), scale_(look.height_m / kUsualHeight_m) {}
 
-  // A limb of `num_sides` flat sides.
-  void add_limb(const Eigen::Vector3f& from_m, const Eigen::Vector3f& to_m, float radius_m,
-                const Material& material, int num_sides = 6) {
-    shapes_.add_bar({.from_m = scale_ * from_m,
-                     .to_m = scale_ * to_m,
-                     .radius_m = scale_ * look_.girth * radius_m,
-                     .num_sides = num_sides},
-                    material);
+  // Round, thinner or thicker towards its end.
+  struct Part {
+    Eigen::Vector3f from_m;
+    Eigen::Vector3f to_m;
+    Eigen::Vector2f radii_m;  // of its first and of its second half
+  };
+  void add_part(const Part& part, const Material& material) {
+    const Eigen::Vector3f middle_m = 0.5F * (part.from_m + part.to_m);
+    add_bar(part.from_m, middle_m, part.radii_m.x(), material);
+    add_bar(middle_m, part.to_m, part.radii_m.y(), material);
   }
   void add_block(const Eigen::Vector3f& low_m, const Eigen::Vector3f& high_m,
                  const Material& material) {
     shapes_.add_block({scale_ * low_m, scale_ * high_m}, material);
   }
-  // Upright, with an oval section of eight sides around (0, y, z) and a lid where it has one.
-  struct Oval {
-    float low_m;
-    float high_m;
-    Eigen::Vector2f half_m;  // x and z
-    float z_m = 0.0F;
-    bool has_lid = false;
-  };
-  void add_oval(const Oval& oval, const Material& material) {
-    constexpr int kNumSides = 8;
-    const auto corner = [&](int i) {
-      const float angle_rad = kPi * (2.0F * static_cast<float>(i) + 1.0F) / kNumSides;
-      const float out = 1.0F / std::cos(kPi / kNumSides);
-      return Eigen::Vector3f(out * oval.half_m.x() * std::sin(angle_rad), oval.low_m,
-                             oval.z_m + out * oval.half_m.y() * std::cos(angle_rad));
-    };
-    for (int i = 0; i < kNumSides; ++i) {
-      const Eigen::Vector3f side_m = corner(i + 1) - corner(i);
-      shapes_.add_panel(
-          {.corner_m = scale_ * corner(i),
-           .right = side_m.normalized(),
-           .size_m = scale_ * Eigen::Vector2f(side_m.norm(), oval.high_m - oval.low_m)},
-          material);
-    }
-    if (oval.has_lid) add_lid(oval, material);
+  // In metres of somebody of the usual height.
+  void add_post(Post post, const Material& material) {
+    post.low_m *= scale_;
+    post.high_m *= scale_;
+    post.middle_m *= scale_;
+    post.half_m *= scale_;
+    shapes_.add_post(post, material);
   }
   const Look& look() const { return look_; }
 
  private:
-  // Three strips that leave hardly a gap, each a hair below the one before.
-  void add_lid(const Oval& oval, const Material& material) {
-    constexpr float kHair_m = 2e-4F;
-    float y_m = oval.high_m;
-    for (const auto& ratio : {Eigen::Vector2f(1.0F, 0.414F), Eigen::Vector2f(0.707F, 0.707F),
-                              Eigen::Vector2f(0.414F, 1.0F)}) {
-      const Eigen::Vector2f half_m = ratio.cwiseProduct(oval.half_m);
-      shapes_.add_panel(
-          {.corner_m = scale_ * Eigen::Vector3f(-half_m.x(), y_m, oval.z_m + half_m.y()),
-           .up = -Eigen::Vector3f::UnitZ(),
-           .size_m = 2.0F * scale_ * half_m},
-          material);
-      y_m -= kHair_m;
-    }
+  // Patterns and light run on around it: it has as many sides as it takes to look round.
+  void add_bar(const Eigen::Vector3f& from_m, const Eigen::Vector3f& to_m, float radius_m,
+               const Material& material) {
+    constexpr int kNumSides = 8;
+    shapes_.add_bar({.from_m = scale_ * from_m,
+                     .to_m = scale_ * to_m,
+                     .radius_m = scale_ * look_.girth * radius_m,
+                     .num_sides = kNumSides},
+                    material);
   }
 
   const Look& look_;
@@ -148,59 +127,98 @@ void add_leg(Body& body, float side, float cycle_rad, float lift_m) {
   const Look& look = body.look();
   Limb leg = leg_at(side, cycle_rad);
   for (Eigen::Vector3f* point : {&leg.joint_m, &leg.middle_m, &leg.end_m}) point->y() += lift_m;
-  body.add_limb(leg.middle_m, leg.joint_m, look.has_skirt ? 0.06F : 0.085F, look.trousers);
-  body.add_limb(leg.end_m, leg.middle_m, 0.055F, look.has_skirt ? look.skin : look.trousers);
+  const float thigh_m = look.has_skirt ? 0.065F : 0.085F;
+  body.add_part({leg.middle_m, leg.joint_m, {0.85F * thigh_m, thigh_m}}, look.trousers);
+  body.add_part({leg.end_m, leg.middle_m, {0.05F, 0.062F}},
+                look.has_skirt ? look.skin : look.trousers);
   const Eigen::Vector3f heel_m = leg.end_m + Eigen::Vector3f(-0.045F, -0.06F, -0.07F);
   body.add_block(heel_m, heel_m + Eigen::Vector3f(0.09F, 0.085F, 0.26F), look.shoes);
 }
 
 void add_arm(Body& body, float side, float cycle_rad, float lift_m) {
+  const Look& look = body.look();
   const float upper_rad = 0.35F * std::sin(cycle_rad);
   const Limb arm =
-      limb_from({side * 0.215F, 1.42F + lift_m, 0.0F}, {0.29F, 0.26F}, upper_rad, upper_rad + 0.3F);
-  const Eigen::Vector3f out(side * 0.03F, 0.0F, 0.0F);
-  body.add_limb(arm.middle_m + out, arm.joint_m, 0.052F, body.look().jacket);
-  body.add_limb(arm.end_m + out, arm.middle_m + out, 0.043F, body.look().jacket);
+      limb_from({side * 0.2F, 1.39F + lift_m, 0.0F}, {0.28F, 0.25F}, upper_rad, upper_rad + 0.3F);
+  const Eigen::Vector3f out(side * 0.035F, 0.0F, 0.0F);
+  body.add_part({arm.middle_m + out, arm.joint_m, {0.047F, 0.055F}}, look.jacket);
+  body.add_part({arm.end_m + out, arm.middle_m + out, {0.036F, 0.043F}}, look.jacket);
   const Eigen::Vector3f hand_m = arm.end_m + out;
-  body.add_block(hand_m + Eigen::Vector3f(-0.025F, -0.14F, -0.035F),
-                 hand_m + Eigen::Vector3f(0.025F, 0.0F, 0.045F), body.look().skin);
+  body.add_part({hand_m + Eigen::Vector3f(0.0F, -0.15F, 0.03F), hand_m, {0.027F, 0.031F}},
+                look.skin);
+  // the round of the shoulder
+  const float wide = look.girth;
+  const auto add = [&](float low_m, float high_m, float radius_m) {
+    body.add_post({.low_m = low_m + lift_m,
+                   .high_m = high_m + lift_m,
+                   .middle_m = {side * 0.2F, 0.0F},
+                   .half_m = Eigen::Vector2f::Constant(radius_m * wide),
+                   .num_sides = 8,
+                   .has_lid = true},
+                  look.jacket);
+  };
+  add(1.37F, 1.41F, 0.058F);
+  add(1.41F, 1.432F, 0.043F);
+}
+
+// A slice of a trunk or a head: around (0, y, z).
+struct Slice {
+  float low_m;
+  float high_m;
+  Eigen::Vector2f half_m;
+  float z_m = 0.0F;
+  bool has_lid = true;
+};
+
+void add_slice(Body& body, const Slice& slice, float lift_m, const Material& material) {
+  body.add_post({.low_m = slice.low_m + lift_m,
+                 .high_m = slice.high_m + lift_m,
+                 .middle_m = {0.0F, slice.z_m},
+                 .half_m = slice.half_m,
+                 .has_lid = slice.has_lid},
+                material);
 }
 
 void add_trunk(Body& body, float lift_m) {
   const Look& look = body.look();
   const float wide = look.girth;
-  const auto add = [&](float low_m, float high_m, const Eigen::Vector2f& half_m,
-                       const Material& material) {
-    body.add_oval({low_m + lift_m, high_m + lift_m, half_m, 0.0F, true}, material);
-  };
-  add(kHip_m - 0.06F, 1.0F, {0.17F * wide, 0.115F * wide}, look.trousers);
-  add(0.96F, 1.2F, {0.175F * wide, 0.12F * wide}, look.jacket);
-  add(1.2F, 1.4F, {0.19F, 0.125F * wide}, look.jacket);
-  add(1.4F, 1.47F, {0.165F, 0.09F}, look.jacket);  // shoulders
-  if (look.has_skirt) add(0.55F, 0.96F, {0.19F * wide, 0.16F * wide}, look.trousers);
+  add_slice(body, {kHip_m - 0.06F, 0.97F, {0.165F * wide, 0.115F * wide}, 0.0F, false}, lift_m,
+            look.trousers);
+  const Slice jacket[] = {{0.94F, 1.08F, {0.17F * wide, 0.12F * wide}},
+                          {1.08F, 1.2F, {0.168F * wide, 0.117F * wide}, 0.0F, false},
+                          {1.2F, 1.3F, {0.177F * wide, 0.122F * wide}, 0.0F, false},
+                          {1.3F, 1.39F, {0.185F * wide, 0.12F * wide}},
+                          {1.39F, 1.425F, {0.17F, 0.105F}},
+                          {1.425F, 1.45F, {0.135F, 0.088F}},
+                          {1.45F, 1.47F, {0.095F, 0.072F}}};
+  for (const auto& slice : jacket) add_slice(body, slice, lift_m, look.jacket);
+  if (look.has_skirt) {
+    add_slice(body, {0.74F, 0.96F, {0.185F * wide, 0.14F * wide}}, lift_m, look.trousers);
+    add_slice(body, {0.55F, 0.74F, {0.195F * wide, 0.165F * wide}}, lift_m, look.trousers);
+  }
   if (!look.has_bag) return;
-  body.add_block({-0.15F, 1.02F + lift_m, -0.27F}, {0.15F, 1.43F + lift_m, -0.12F * wide},
+  body.add_block({-0.15F, 1.02F + lift_m, -0.27F}, {0.15F, 1.40F + lift_m, -0.11F * wide},
                  look.bag);
 }
 
 void add_head(Body& body, float lift_m) {
   const Look& look = body.look();
-  const Eigen::Vector3f up(0.0F, lift_m, 0.0F);
-  body.add_limb(up + Eigen::Vector3f(0.0F, 1.44F, 0.0F), up + Eigen::Vector3f(0.0F, 1.55F, 0.01F),
-                0.055F, look.skin);
-  const auto add = [&](float low_m, float high_m, const Eigen::Vector2f& half_m, float z_m,
-                       const Material& material) {
-    body.add_oval({low_m + lift_m, high_m + lift_m, half_m, z_m, true}, material);
-  };
-  add(1.52F, 1.58F, {0.06F, 0.075F}, 0.02F, look.skin);
-  add(1.58F, 1.70F, {0.074F, 0.094F}, 0.012F, look.skin);
-  add(1.68F, 1.73F, {0.08F, 0.1F}, 0.0F, look.hair);
-  add(1.73F, 1.75F, {0.055F, 0.075F}, 0.0F, look.hair);
-  const float hem_m = look.has_long_hair ? 1.42F : 1.58F;
-  body.add_oval({hem_m + lift_m, 1.7F + lift_m, {0.083F, 0.055F}, -0.052F}, look.hair);
+  const Slice skin[] = {{1.44F, 1.56F, {0.055F, 0.058F}, 0.0F, false},
+                        {1.525F, 1.545F, {0.045F, 0.055F}, 0.03F, false},
+                        {1.545F, 1.58F, {0.062F, 0.078F}, 0.018F},
+                        {1.58F, 1.62F, {0.07F, 0.09F}, 0.013F},
+                        {1.62F, 1.69F, {0.075F, 0.095F}, 0.011F, false}};
+  for (const auto& slice : skin) add_slice(body, slice, lift_m, look.skin);
+  const float hem_m = look.has_long_hair ? 1.42F : 1.57F;
+  const Slice hair[] = {{hem_m, 1.69F, {0.078F, 0.06F}, -0.038F, false},
+                        {1.68F, 1.708F, {0.081F, 0.101F}, 0.004F},
+                        {1.708F, 1.732F, {0.072F, 0.09F}, 0.0F},
+                        {1.732F, 1.75F, {0.05F, 0.065F}, 0.0F}};
+  for (const auto& slice : hair) add_slice(body, slice, lift_m, look.hair);
   // a nose tells the front
-  body.add_block(up + Eigen::Vector3f(-0.013F, 1.6F, 0.09F),
-                 up + Eigen::Vector3f(0.013F, 1.635F, 0.122F), look.skin);
+  const Eigen::Vector3f up(0.0F, lift_m, 0.0F);
+  body.add_block(up + Eigen::Vector3f(-0.012F, 1.6F, 0.09F),
+                 up + Eigen::Vector3f(0.012F, 1.635F, 0.121F), look.skin);
 }
 
 }  // namespace

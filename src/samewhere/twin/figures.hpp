@@ -28,7 +28,7 @@ Look look_of(std::uint64_t seed);
 // Metres forward in one whole step of the walking cycle: left and right foot once each.
 float stride_m(const Look& look);
 
-// Somebody who walks on a level floor, in the world: about 170 rectangles. `phase` counts whole
+// Somebody who walks on a level floor, in the world: some 480 rectangles. `phase` counts whole
 // strides, so that a walk at constant speed v has phase v t / stride; `position_m` is the point of
 // the floor below the hips, and they walk along the heading (from the x axis towards the y axis).
 std::vector<Rectangle> figure(const Look& look, float phase, const Eigen::Vector3f& position_m,

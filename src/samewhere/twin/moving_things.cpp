@@ -8,6 +8,7 @@ namespace samewhere::twin {
 namespace {
 
 constexpr float kShadowReach_m = 0.8F;
+constexpr float kSmall_m = 0.25F;  // light hardly differs from end to end
 
 struct Disc {
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
@@ -43,6 +44,20 @@ float share_filled(const Disc& disc, const SurfacePoint& point) {
          (squared_m2 * (std::numbers::pi_v<float> * squared_m2 + disc.area_m2));
 }
 
+bool is_small_flat(const Rectangle& r) {
+  return r.turns_rad.isZero() && r.size_m.maxCoeff() < kSmall_m;
+}
+
+// Whether the right side of one is the left side of the next and both belong to something round.
+bool share_side(const Rectangle& one, const Rectangle& next) {
+  constexpr float kSame_m = 1e-4F;
+  if (one.turns_rad.y() <= 0.0F || next.turns_rad.x() <= 0.0F) return false;
+  const Eigen::Vector3f low_m = one.at({one.size_m.x(), 0.0F});
+  const Eigen::Vector3f high_m = one.at(one.size_m);
+  return (low_m - next.corner_m).norm() < kSame_m &&
+         (high_m - next.at({0.0F, next.size_m.y()})).norm() < kSame_m;
+}
+
 }  // namespace
 
 // Of surfaces one after another that are close together: a person.
@@ -53,7 +68,7 @@ struct MovingThings::Group {
 };
 
 MovingThings::MovingThings(const std::vector<Rectangle>& rectangles, const Light& light)
-    : rectangles_(rectangles), light_(light), corner_lights_(rectangles.size()) {
+    : rectangles_(rectangles), light_(light), side_lights_(rectangles.size()) {
   constexpr float kGroup_m = 1.2F;
   if (rectangles.empty()) return;
   rays_.emplace(rectangles);
@@ -83,30 +98,54 @@ void MovingThings::meet(const Eigen::Vector3f& origin, std::span<const Eigen::Ve
   }
 }
 
-MovingThings::CornerLight MovingThings::light_at_corners(const Rectangle& r) const {
-  constexpr float kSmall_m = 0.25F;
+// At the left or right side, at a height from 0 to 1: on the round thing if it is a facet of one.
+Colour MovingThings::light_at_side(const Rectangle& r, Side side, float up_ratio) const {
   constexpr float kOffSurface_m = 1e-3F;
-  const auto light_at = [&](float right_ratio, float up_ratio) {
-    const Eigen::Vector3f on_it =
-        r.at(r.size_m.cwiseProduct(Eigen::Vector2f(right_ratio, up_ratio)));
-    return light_.falling_on({on_it + kOffSurface_m * r.normal(), r.normal()});
-  };
-  CornerLight light;
-  if (r.size_m.maxCoeff() < kSmall_m) {
-    light.fill(light_at(0.5F, 0.5F));
-  } else {
-    light = {light_at(0, 0), light_at(1, 0), light_at(0, 1), light_at(1, 1)};
+  const bool is_right = side == Side::kRight;
+  // of small flat pieces in the middle: their corners may be in something else
+  const bool is_small = is_small_flat(r);
+  const float right_ratio = is_small ? 0.5F : (is_right ? 1.0F : 0.0F);
+  const Eigen::Vector3f on_it = r.at(r.size_m.cwiseProduct(Eigen::Vector2f(right_ratio, up_ratio)));
+  const float turn_rad = is_right ? r.turns_rad.y() : -r.turns_rad.x();
+  const Eigen::Vector3f normal = std::cos(turn_rad) * r.normal() + std::sin(turn_rad) * r.right;
+  return light_.falling_on({on_it + kOffSurface_m * normal, normal});
+}
+
+MovingThings::SideLight MovingThings::light_along(const Rectangle& r, Side side) const {
+  if (r.size_m.y() >= kSmall_m) {
+    return {light_at_side(r, side, 0.0F), light_at_side(r, side, 1.0F)};
   }
-  return light;
+  const Colour middle = light_at_side(r, side, 0.5F);
+  return {middle, middle};
+}
+
+// Facets of a round thing come one after another: neighbours share the light on their common side.
+const MovingThings::SideLight& MovingThings::side_light(int index, Side side) {
+  const auto slot = [&](int of, Side which) -> std::optional<SideLight>& {
+    return side_lights_[static_cast<std::size_t>(of)][static_cast<std::size_t>(which)];
+  };
+  auto& light = slot(index, side);
+  if (light) return *light;
+  const Rectangle& r = rectangle(index);
+  const bool is_right = side == Side::kRight;
+  const int next = index + (is_right ? 1 : -1);
+  const Side opposite = is_right ? Side::kLeft : Side::kRight;
+  if (next >= 0 && next < static_cast<int>(rectangles_.size()) &&
+      share_side(is_right ? r : rectangle(next), is_right ? rectangle(next) : r)) {
+    light = slot(next, opposite);
+  }
+  if (is_small_flat(r)) light = slot(index, opposite);
+  if (!light) light = light_along(r, side);
+  return *light;
 }
 
 Colour MovingThings::light_at(int index, const Eigen::Vector2f& right_up_m) {
   const Rectangle& r = rectangle(index);
-  auto& light = corner_lights_[static_cast<std::size_t>(index)];
-  if (!light) light = light_at_corners(r);
+  const SideLight& left = side_light(index, Side::kLeft);
+  const SideLight& right = side_light(index, Side::kRight);
   const Eigen::Vector2f ratio = right_up_m.cwiseQuotient(r.size_m);
-  const Colour lower = (*light)[0] + ratio.x() * ((*light)[1] - (*light)[0]);
-  const Colour upper = (*light)[2] + ratio.x() * ((*light)[3] - (*light)[2]);
+  const Colour lower = left[0] + ratio.x() * (right[0] - left[0]);
+  const Colour upper = left[1] + ratio.x() * (right[1] - left[1]);
   return (lower + ratio.y() * (upper - lower)).max(0.0F);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,16 +41,19 @@ class MovingThings {
 
  private:
   struct Group;
-  // lower left, lower right, upper left, upper right
-  using CornerLight = std::array<Colour, 4>;
+  enum class Side : std::uint8_t { kLeft, kRight };
+  using SideLight = std::array<Colour, 2>;  // at its lower and upper end
 
-  CornerLight light_at_corners(const Rectangle& r) const;
+  Colour light_at_side(const Rectangle& r, Side side, float up_ratio) const;
+  SideLight light_along(const Rectangle& r, Side side) const;
+  const SideLight& side_light(int index, Side side);
 
   const std::vector<Rectangle>& rectangles_;
   const Light& light_;
   std::optional<RayScene> rays_;
   std::vector<Group> groups_;
-  std::vector<std::optional<CornerLight>> corner_lights_;  // of those that were asked for
+  // left and right of each, where asked for
+  std::vector<std::array<std::optional<SideLight>, 2>> side_lights_;
 };
 
 }  // namespace samewhere::twin

@@ -25,14 +25,15 @@ Stance stand_of(const Eigen::Vector3f& origin_m, const Eigen::Vector3f& right,
 }
 
 void Shapes::add_panel(const Panel& panel, const Material& material) {
-  rectangles_.push_back(
-      {.corner_m = stand_.at(panel.corner_m),
-       .right = stand_.axes * panel.right,
-       .up = stand_.axes * panel.up,
-       .size_m = panel.size_m,
-       .pattern_m = {panel.right.dot(panel.corner_m), panel.up.dot(panel.corner_m)},
-       .object = object_,
-       .material = material});
+  rectangles_.push_back({.corner_m = stand_.at(panel.corner_m),
+                         .right = stand_.axes * panel.right,
+                         .up = stand_.axes * panel.up,
+                         .size_m = panel.size_m,
+                         .pattern_m = panel.pattern_m.value_or(Eigen::Vector2f(
+                             panel.right.dot(panel.corner_m), panel.up.dot(panel.corner_m))),
+                         .object = object_,
+                         .turns_rad = panel.turns_rad,
+                         .material = material});
 }
 
 void Shapes::add_face(const Box& box, int axis, float facing, const Material& material) {
@@ -75,9 +76,9 @@ void Shapes::add_bar(const Bar& bar, const Material& material) {
     Panel panel{.right = right, .up = along};
     panel.corner_m = bar.from_m + bar.radius_m * normal - 0.5F * side_m * right;
     panel.size_m = {side_m, (bar.to_m - bar.from_m).norm()};
-    const std::size_t index = rectangles_.size();
+    panel.pattern_m = {side_m * static_cast<float>(i), along.dot(panel.corner_m)};
+    panel.turns_rad.fill(half_rad);
     add_panel(panel, material);
-    rectangles_[index].pattern_m.x() = side_m * static_cast<float>(i);
   }
   if (!bar.has_ends) return;
   add_end(bar, along, side, material);
@@ -107,6 +108,55 @@ void Shapes::add_end(const Bar& bar, const Eigen::Vector3f& along, const Eigen::
                .up = up,
                .size_m = {2.0F * bar.radius_m, side_m}},
               material);
+  }
+}
+
+void Shapes::add_post(const Post& post, const Material& material) {
+  constexpr float kSidePattern_m = 0.1F;  // whatever the girth: stripes run on to the post above
+  const float half_rad = kPi / static_cast<float>(post.num_sides);
+  // from the middle to a corner and along its normal, before the ellipse stretches them
+  const auto out = [&](int corner) -> Eigen::Array2f {
+    const float angle_rad = half_rad * static_cast<float>(2 * corner - 1);
+    return {std::sin(angle_rad), std::cos(angle_rad)};
+  };
+  const auto corner_m = [&](int corner) -> Eigen::Vector3f {
+    const Eigen::Array2f xz_m =
+        post.middle_m.array() + out(corner) * post.half_m.array() / std::cos(half_rad);
+    return {xz_m.x(), post.low_m, xz_m.y()};
+  };
+  for (int i = 0; i < post.num_sides; ++i) {
+    const Eigen::Vector3f side_m = corner_m(i + 1) - corner_m(i);
+    const Eigen::Vector3f right = side_m.normalized();
+    const auto turn_rad = [&](int corner) {
+      const Eigen::Vector2f normal = (out(corner) / post.half_m.array()).matrix().normalized();
+      return std::asin(std::abs(right.x() * normal.x() + right.z() * normal.y()));
+    };
+    add_panel({.corner_m = corner_m(i),
+               .right = right,
+               .size_m = {side_m.norm(), post.high_m - post.low_m},
+               .pattern_m = Eigen::Vector2f(
+                   kSidePattern_m * static_cast<float>(i) - 0.5F * side_m.norm(), post.low_m),
+               .turns_rad = {turn_rad(i), turn_rad(i + 1)}},
+              material);
+  }
+  if (post.has_lid) add_lid(post, material);
+}
+
+// Strips that leave hardly a gap, each a hair below the one before.
+void Shapes::add_lid(const Post& post, const Material& material) {
+  constexpr float kHair_m = 2e-4F;
+  constexpr int kNumStrips = 5;
+  for (int i = 0; i < kNumStrips; ++i) {
+    const float angle_rad = (15.0F + 15.0F * static_cast<float>(i)) * kPi / 180.0F;
+    const Eigen::Vector2f half_m =
+        post.half_m.cwiseProduct(Eigen::Vector2f(std::cos(angle_rad), std::sin(angle_rad)));
+    const Eigen::Vector2f middle_m = post.middle_m;
+    add_panel(
+        {.corner_m = {middle_m.x() - half_m.x(), post.high_m - kHair_m * static_cast<float>(i),
+                      middle_m.y() + half_m.y()},
+         .up = -Eigen::Vector3f::UnitZ(),
+         .size_m = 2.0F * half_m},
+        material);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <samewhere/twin/surface.hpp>
@@ -38,6 +39,18 @@ struct Panel {
   Eigen::Vector3f right = Eigen::Vector3f::UnitX();
   Eigen::Vector3f up = Eigen::Vector3f::UnitY();
   Eigen::Vector2f size_m = Eigen::Vector2f::Ones();
+  std::optional<Eigen::Vector2f> pattern_m;             // where patterns start, if not by place
+  Eigen::Vector2f turns_rad = Eigen::Vector2f::Zero();  // as of Rectangle
+};
+
+// A round post that stands upright, its section an ellipse, as a prism of flat sides.
+struct Post {
+  float low_m = 0.0F;
+  float high_m = 1.0F;
+  Eigen::Vector2f middle_m = Eigen::Vector2f::Zero();  // x and z
+  Eigen::Vector2f half_m = Eigen::Vector2f::Ones();    // x and z
+  int num_sides = 12;
+  bool has_lid = false;
 };
 
 // Shapes made of rectangles, appended in the coordinates of a stand. Patterns run on over the faces
@@ -52,6 +65,7 @@ class Shapes {
   // All around the same: six faces.
   void add_block(const Box& box, const Material& material);
   void add_bar(const Bar& bar, const Material& material);
+  void add_post(const Post& post, const Material& material);
   void add_panel(const Panel& panel, const Material& material);
   // A thin sheet, seen from both sides.
   void add_sheet(const Panel& panel, const Material& material);
@@ -61,6 +75,7 @@ class Shapes {
   const Stance& stand() const { return stand_; }
 
  private:
+  void add_lid(const Post& post, const Material& material);
   void add_face(const Box& box, int axis, float facing, const Material& material);
   void add_end(const Bar& bar, const Eigen::Vector3f& along, const Eigen::Vector3f& side,
                const Material& material);

@@ -70,6 +70,9 @@ struct Rectangle {
   // to the next. On walls its y is the height of the corner above the floor.
   Eigen::Vector2f pattern_m = Eigen::Vector2f::Zero();
   int object = -1;  // index in Building::objects; -1: belongs to none
+  // A facet of something round: by how much the normal turns outwards, towards its left and its
+  // right side. Light on things that move is computed for the round thing.
+  Eigen::Vector2f turns_rad = Eigen::Vector2f::Zero();
   Material material;
 
   // Towards whoever sees it.
