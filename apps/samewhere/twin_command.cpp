@@ -43,6 +43,9 @@ bool has_sheet(const TwinCommand& command) {
 }
 
 void write_sheet(const std::string& file, const cv::Mat& sheet) {
+  if (!file.ends_with(".jpg") && !file.ends_with(".jpeg")) {
+    throw core::InputError(file + ": a sheet is a JPEG file; expected a name that ends in .jpg");
+  }
   core::write_file(file, report::jpeg_bytes(sheet, sheet.cols));
   fmt::print("{}\n", file);
 }

@@ -156,7 +156,11 @@ std::optional<Recording> find_euroc(const path& folder, const Config& config) {
     recording.imu = read_imu_samples(mav / "imu0" / "data.csv");
     recording.rig.imu = read_euroc_imu(mav / "imu0" / "sensor.yaml");
   }
-  recording.truth = read_truth(is_around ? folder : folder / "..", static_cast<int>(rows.size()));
+  // tables that are no part of the format lie beside mav0
+  const path whole = std::filesystem::absolute(mav).lexically_normal();
+  const bool is_mav0 = is_around || whole.filename() == "mav0";
+  recording.truth =
+      read_truth(is_mav0 ? whole.parent_path() : folder, static_cast<int>(rows.size()));
   const path truth = mav / "state_groundtruth_estimate0";
   if (is_folder(truth)) {
     recording.truth.trajectory = read_poses(truth, recording.rig.body_from_camera.front());

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -9,6 +11,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
+#include <samewhere/input/csv_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/truth_file.hpp>
 
@@ -85,6 +88,32 @@ PlaceTruthMatrix read_text_matrix(const path& file, int num_frames) {
 
 }  // namespace
 
+namespace {
+
+// query,match,...: frames of different places that look alike.
+std::vector<core::FramePair> read_impostors(const path& file, int num_frames) {
+  const std::vector<core::TextLine> lines = read_csv_lines(file);
+  std::vector<core::FramePair> pairs;
+  for (std::size_t i = 1; i < lines.size(); ++i) {  // the first names the columns
+    if (lines[i].words.size() < 2) {
+      throw InputError(lines[i].place + ": one column; expected query,match,...");
+    }
+    const double query = core::finite_number(lines[i], 0);
+    const double match = core::finite_number(lines[i], 1);
+    const bool is_pair = query == std::floor(query) && match == std::floor(match) && match >= 0 &&
+                         match < query && query < num_frames;
+    if (!is_pair) {
+      throw InputError(fmt::format("{}: {},{}; expected query > match >= 0, frames below {}",
+                                   lines[i].place, query, match, num_frames));
+    }
+    pairs.push_back({static_cast<int>(query), static_cast<int>(match)});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace
+
 core::Truth read_truth(const path& folder, int num_frames) {
   core::Truth truth;
   if (is_there(folder / "groundtruth.tum")) {
@@ -94,6 +123,9 @@ core::Truth read_truth(const path& folder, int num_frames) {
     truth.places = read_pgm(folder / "same_place.pgm", num_frames);
   } else if (is_there(folder / "same_place.txt")) {
     truth.places = read_text_matrix(folder / "same_place.txt", num_frames);
+  }
+  if (is_there(folder / "impostors.csv")) {
+    truth.impostors = read_impostors(folder / "impostors.csv", num_frames);
   }
   return truth;
 }

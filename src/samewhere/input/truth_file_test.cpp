@@ -98,5 +98,19 @@ TEST_F(TruthFile, AMatrixThatScalesMirrorsOrProjectsIsRefused) {
   EXPECT_THAT(refusal(std::vector<double>(16, 0.0)), is_refused);
 }
 
+TEST_F(TruthFile, ImpostorsAreReadAndAFrameThatIsNotThereIsNamed) {
+  folder_.write("impostors.csv", "query,match,alike\n2,1,0.5\n1,0,0.4\n");
+  const core::Truth truth = read_truth(folder_.root(), 3);
+  ASSERT_EQ(truth.impostors.size(), 2U);
+  EXPECT_EQ(truth.impostors[0].query, 1);
+  EXPECT_EQ(truth.impostors[1].match, 1);
+  for (const char* line : {"3,1,0.5", "1,1,0.5", "1,-1,0.5", "1.5,0,0.5", "2"}) {
+    folder_.write("impostors.csv", std::string("query,match,alike\n") + line + "\n");
+    EXPECT_THAT(complaint([&] { read_truth(folder_.root(), 3); }),
+                testing::HasSubstr("impostors.csv, line 2"))
+        << line;
+  }
+}
+
 }  // namespace
 }  // namespace samewhere::input

@@ -80,7 +80,7 @@ void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists)
   const std::string file = fmt::format("{}.png", stamp_ns(frame.stamp_s));
   for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
     out.write(fmt::format("mav0/cam{}/data/{}", camera, file),
-              png_bytes(frame.images[camera], Effort::kSmall));
+              png_bytes(frame.images[camera], Effort::kFast));
   }
   lists.pictures += fmt::format("{},{}\n", stamp_ns(frame.stamp_s), file);
   for (const core::ImuSample& sample : frame.imu_since_last) {
@@ -151,7 +151,9 @@ void write_poses(const PartialFolder& out, const core::Trajectory& trajectory,
   const std::string folder = "mav0/state_groundtruth_estimate0/";
   out.write(folder + "data.csv", poses_csv(trajectory, rig.body_from_camera.front()));
   out.write(folder + "sensor.yaml",
-            "sensor_type: visual-inertial\ncomment: exact\n" + transform_yaml(core::Rigid3{}));
+            "sensor_type: visual-inertial\ncomment: exact poses; velocities by central "
+            "differences; biases not known, written as 0\n" +
+                transform_yaml(core::Rigid3{}));
 }
 
 }  // namespace

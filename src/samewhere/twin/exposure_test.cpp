@@ -32,7 +32,7 @@ TEST(Exposure, OpensTheShutterFirstAndTurnsUpTheGainThen) {
   const auto dark = automatic_exposures(std::vector<float>{0.03F}, kRate_hz).front();
   EXPECT_LT(bright.duration_s, usual.duration_s);
   EXPECT_LT(usual.duration_s, dark.duration_s);
-  EXPECT_FLOAT_EQ(dark.duration_s, 0.015F);
+  EXPECT_FLOAT_EQ(dark.duration_s, 0.010F);
   EXPECT_EQ(bright.gain, 1.0F);
   EXPECT_EQ(usual.gain, 1.0F);
   EXPECT_GT(dark.gain, 3.0F);

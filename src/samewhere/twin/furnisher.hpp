@@ -67,8 +67,9 @@ class Furnisher {
   void add_double_door(const Place& place);
   void add_lift_door(const Place& place, int floor);
   void add_floor_number(const Place& place, int floor);
-  void add_notice_board(const Place& place);   // 1.18 m x 0.9 m
-  void add_framed_poster(const Place& place);  // 0.64 m x 0.88 m
+  void add_bay_number(const Place& place, int bay);  // large, above doors
+  void add_notice_board(const Place& place);         // 1.18 m x 0.9 m
+  void add_framed_poster(const Place& place);        // 0.64 m x 0.88 m
   void add_extinguisher(const Place& place);
   void add_cabinet(const Place& place);  // 0.9 m wide, 0.32 m deep
   void add_switch(const Place& place);
@@ -102,6 +103,7 @@ class Furnisher {
   void add_high_bay_lamp(const Eigen::Vector2f& middle_m, float ceiling_m);
 
  private:
+  void add_number(const Place& place, const std::string& name, int number, const Box& board);
   // The next thing, at a stand in the unit.
   Piece piece_at(const Stance& stand);
   Piece piece_at(const Wall& wall);

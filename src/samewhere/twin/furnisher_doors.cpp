@@ -158,13 +158,24 @@ void Furnisher::add_lift_door(const Place& place, int floor) {
 }
 
 void Furnisher::add_floor_number(const Place& place, int floor) {
+  add_number(place, fmt::format("floor number {}", floor), floor,
+             centred({0.0F, 1.65F}, {0.36F, 0.42F}, {0.0F, 0.006F}));
+}
+
+void Furnisher::add_bay_number(const Place& place, int bay) {
+  add_number(place, fmt::format("bay number {}", bay), bay,
+             centred({0.0F, 2.75F}, {0.60F, 0.70F}, {0.0F, 0.006F}));
+}
+
+void Furnisher::add_number(const Place& place, const std::string& name, int number,
+                           const Box& board) {
   Piece piece = piece_at(place);
   const Colour inks[] = {paints::kBlue, paints::kGreen, paints::kGrey, paints::kRed};
   Material sign =
       piece.made_of(Finish::kBigNumber, paints::kWhite, 0.7F * piece.draws().blend(inks));
-  sign.number = floor;
-  piece.begin_object(fmt::format("floor number {}", floor), true);
-  piece.add_box(centred({0.0F, 1.65F}, {0.36F, 0.42F}, {0.0F, 0.006F}), {sign, sign});
+  sign.number = number;
+  piece.begin_object(name, true);
+  piece.add_box(board, {sign, sign});
   piece.end_object();
 }
 

@@ -324,7 +324,8 @@ Colour Light::gathered(const SurfacePoint& point, std::span<const Eigen::Vector3
     sum += weight * mean_reflectance(seen.material) *
            light.at(hits[i].rectangle, seen.right_up_m(position));
   }
-  return sum / sum_weights;
+  constexpr float kLeastWeight = 1e-6F;  // nothing but slivers is seen
+  return sum / std::max(sum_weights, kLeastWeight);
 }
 
 Colour Light::falling_on(const SurfacePoint& point) const {

@@ -38,7 +38,7 @@ float length_of(const Wall& wall) { return (wall.to_m - wall.from_m).norm(); }
 
 }  // namespace
 
-Draft draft_of(const Spec& spec, const Plan& plan, const Visit& visit) {
+Draft draft_of(const Spec& spec, const Plan& plan, const VisitSetting& visit) {
   return {spec, visit, plan, {.units = plan.units(), .areas = plan.areas()}};
 }
 

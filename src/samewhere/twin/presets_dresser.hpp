@@ -10,7 +10,7 @@
 namespace samewhere::twin {
 
 // One visit of a building: how bright it is, and when.
-struct Visit {
+struct VisitSetting {
   std::uint64_t index = 0;
   LightSetting light;
 };
@@ -18,13 +18,13 @@ struct Visit {
 // A building in the making, as it is at one visit.
 struct Draft {
   Spec spec;
-  Visit visit;
+  VisitSetting visit;
   Plan plan;
   Building building;
 };
 
 // The units and spaces of the plan, nothing to see yet.
-Draft draft_of(const Spec& spec, const Plan& plan, const Visit& visit = {});
+Draft draft_of(const Spec& spec, const Plan& plan, const VisitSetting& visit = {});
 
 // What stands along one side of a space.
 enum class Use : std::uint8_t {

@@ -57,7 +57,8 @@ void furnish_storey(Draft& draft, const Storey& storey, int floor) {
   const auto doors = Use::kDoors;
   dresser.dress(storey.corridor,
                 {.sides = {Use::kWindows, doors, Use::kBare, doors}, .max_depth_m = 0.05F});
-  dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kNothing, Use::kBare, Use::kPlain}});
+  dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kNothing, Use::kBare, Use::kPlain},
+                                 .max_depth_m = 0.05F});
   Furnisher& furnisher = dresser.furnisher();
   furnisher.add_floor_number({dresser.wall_of(storey.landing, 3), 0.6F}, floor);
   const Wall lift = dresser.wall_of(storey.landing, 1);
@@ -100,10 +101,10 @@ World hotel(const Spec& spec) {
 
   World world{.visits = {std::move(draft.building)}};
   Route& route = world.route;
-  route.speed_m_s = 1.85;  // in a hurry: half of the way is stairs and turns, which slow down
+  route.speed_m_s = 2.0;  // in a hurry: half of the way is stairs and turns, which slow down
   route.start_m = on_floor(kDown_m, -1.2, 0);
   route.start_heading_rad = -1.57079632679490;
-  constexpr double kStretch_m = 1.7;
+  constexpr double kStretch_m = 1.2;
   constexpr double kTopStretch_m = 5.2;  // so that the second look comes late enough to count
   constexpr int kTop = kNumFloors - 1;
   for (int floor = 0; floor < kTop; ++floor) {
@@ -114,6 +115,7 @@ World hotel(const Spec& spec) {
   }
   constexpr double kBack_m = 0.7;
   walk_out_and_back(route, kTop, kTopStretch_m, kBack_m);
+  route.steps.emplace_back(Stand{1.0});
   walk(route, {on_floor(kDown_m, -kBack_m, kTop), on_floor(kDown_m, -kTopStretch_m, kTop)});
   return world;
 }

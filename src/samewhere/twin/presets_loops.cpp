@@ -112,7 +112,8 @@ Ward add_ward(Plan& plan) {
   return ward;
 }
 
-Building furnish_ward(const Spec& spec, const Plan& plan, const Ward& ward, const Visit& visit) {
+Building furnish_ward(const Spec& spec, const Plan& plan, const Ward& ward,
+                      const VisitSetting& visit) {
   Draft draft = draft_of(spec, plan, visit);
   Dresser dresser(draft, 0);
   dresser.number_from(101);

@@ -2,6 +2,7 @@
 #include <array>
 #include <chrono>
 #include <map>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -379,9 +380,9 @@ TEST(Presets, HotelEndsWithALookThatItHadTenSecondsBefore) {
   const World world = build_world(spec_of("hotel"));
   const auto points = points_of(world.route);
   EXPECT_DOUBLE_EQ(points.back().z(), 12.0);
-  // around at the end, back, around before the stair and out again
+  // around at the end, back, a moment's rest, around before the stair and out again
   Route until_first = world.route;
-  until_first.steps.resize(until_first.steps.size() - 4);
+  until_first.steps.resize(until_first.steps.size() - 5);
   ASSERT_LT((points_of(until_first).back() - points.back()).norm(), 1e-9);
   const double before_s = estimated_duration_s(until_first) - 2.0 / world.route.speed_m_s;
   EXPECT_GT(estimated_duration_s(world.route) - before_s, 10.0);
@@ -423,6 +424,18 @@ bool has_lamps_on(const Building& building) {
 }
 
 // Structure and wear stay, light and what can be moved do not.
+TEST_P(AnyPreset, UniqueThingsHaveANameOfTheirOwn) {
+  const World world = build_world(spec_of(GetParam(), 1000, 0.8));
+  for (const auto& building : world.visits) {
+    std::set<std::string> names;
+    for (const auto& object : building.objects) {
+      if (!object.is_unique) continue;
+      EXPECT_TRUE(names.insert(object.name).second) << object.name;
+    }
+    EXPECT_GT(names.size(), 10U);
+  }
+}
+
 TEST(Presets, TheSecondVisitFindsTheSameBuildingInAnotherLight) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     const World world = build_world(spec_of("second-visit", seed));

@@ -89,6 +89,7 @@ void furnish_cross(Draft& draft, const Cross& cross, int first_number) {
   for (int i = 0; i < kNumAisles; ++i) {
     const float x_m = kPitch_m * (static_cast<float>(i) + 0.5F);
     furnisher.add_high_bay_lamp({x_m, -0.5F * kCross_m}, kHeight_m);
+    furnisher.add_bay_number({back, kWidth_m + kMargin_m - x_m}, first_number + i);
   }
 }
 

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include <embree3/rtcore.h>
@@ -69,10 +70,14 @@ struct RayScene::Impl {
     core::require(rtcGetDeviceError(device.get()) == RTC_ERROR_NONE, "Embree builds its tree");
   }
 
-  // Exactly where the plane is met: the tree's own answer depends on the processor.
-  Hit hit(unsigned primitive, const Ray& ray) const {
+  // Exactly where the plane is met: the tree's own answer, `found`, depends on the processor. Only
+  // along a plane there is no better one.
+  Hit hit(unsigned primitive, const Ray& ray, float found) const {
+    constexpr float kAgreement = 1e-3F;
     if (primitive == RTC_INVALID_GEOMETRY_ID) return {};
-    return {static_cast<int>(primitive), reach_of_plane(ray, (*rectangles)[primitive])};
+    const float reach = reach_of_plane(ray, (*rectangles)[primitive]);
+    const bool agrees = std::abs(reach - found) <= kAgreement * found;  // not if it is no number
+    return {static_cast<int>(primitive), agrees ? reach : found};
   }
 
   const std::vector<Rectangle>* rectangles;
@@ -112,7 +117,7 @@ std::optional<Hit> RayScene::first_hit(const Ray& ray) const {
   asked.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   asked.hit.primID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(impl_->scene.get(), &context, &asked);
-  const Hit hit = impl_->hit(asked.hit.primID, ray);
+  const Hit hit = impl_->hit(asked.hit.primID, ray, asked.ray.tfar);
   return hit.rectangle < 0 ? std::nullopt : std::optional(hit);
 }
 
@@ -145,7 +150,8 @@ void RayScene::first_hits(const Eigen::Vector3f& origin,
     }
     rtcIntersect8(valid.data(), impl_->scene.get(), &context, &asked);
     for (std::size_t i = 0; i < count; ++i) {
-      hits[first + i] = impl_->hit(asked.hit.primID[i], {origin, directions[first + i]});
+      hits[first + i] =
+          impl_->hit(asked.hit.primID[i], {origin, directions[first + i]}, asked.ray.tfar[i]);
     }
   }
 }

@@ -254,7 +254,8 @@ WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const cor
 }
 
 core::Truth core_truth(core::Trajectory poses, const WalkTruth& truth) {
-  core::Truth result{.trajectory = std::move(poses), .places = truth.places};
+  core::Truth result{.trajectory = std::move(poses), .places = truth.places, .impostors = {}};
+  if (truth.stride_frames != 1) return result;
   for (const Impostor& impostor : truth.impostors) {
     result.impostors.push_back({impostor.query, impostor.match});
   }

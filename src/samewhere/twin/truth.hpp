@@ -70,7 +70,8 @@ inline constexpr int kMaxFramesOfMatrix = 3000;
 // loops and impostors are sought among every 15th frame only.
 WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera);
 
-// What the rest of the system compares with.
+// What the rest of the system compares with. Without impostors if the walk is long: to name a part
+// of them would make others look like none.
 core::Truth core_truth(core::Trajectory poses, const WalkTruth& truth);
 
 }  // namespace samewhere::twin

@@ -82,7 +82,11 @@ core::Frame Walkthrough::frame_without_pictures(int index) const {
 
 std::vector<WheelSample> Walkthrough::wheels() const {
   if (motion_.carrier() != Carrier::kRobot) return {};
-  return wheel_samples(motion_, WheelNoise{}, core::seed_of(spec_.seed, "twin.wheels", 0));
+  std::vector<WheelSample> wheels =
+      wheel_samples(motion_, WheelNoise{}, core::seed_of(spec_.seed, "twin.wheels", 0));
+  const double end_s = stamp_s(num_frames() - 1);
+  std::erase_if(wheels, [&](const WheelSample& sample) { return sample.stamp_s > end_s; });
+  return wheels;
 }
 
 WalkTruth Walkthrough::truth() const { return truth_of(walk_, visits_, rig_->cameras.front()); }

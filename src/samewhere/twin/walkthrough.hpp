@@ -39,7 +39,7 @@ class Walkthrough {
 
   // A frame that has everything but its pictures.
   core::Frame frame_without_pictures(int index) const;
-  // Of the whole walk; empty if no robot walks it.
+  // Up to the last frame; empty if no robot walks.
   std::vector<WheelSample> wheels() const;
   // Exact; takes some seconds.
   WalkTruth truth() const;
