@@ -161,7 +161,9 @@ Colour carpet(const Material& m, const TexturePoint& in_unit) {
   }
   const float fleck = spots(p, {.cell_m = 0.07F, .density = 0.35F}, grain + 20);
   const Colour yarn = mixed(m.colour, m.second, 0.5F * fleck);
-  return yarn * ((1.0F + bars + pile + trodden + 0.35F * fluff) * (1.0F - 0.3F * seam));
+  constexpr float kDarkest = 0.08F;  // where all of it is dark at once
+  const float shade = std::max(1.0F + bars + pile + trodden + 0.35F * fluff, kDarkest);
+  return yarn * (shade * (1.0F - 0.3F * seam));
 }
 
 Colour floor_tiles(const Material& m, const TexturePoint& p) {

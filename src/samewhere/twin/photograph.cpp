@@ -84,7 +84,7 @@ class SensorNoise {
   explicit SensorNoise(float gain)
       : shot_(kShotNoise * gain), read_(kReadNoise * kReadNoise * gain * gain) {}
 
-  float deviation(float signal) const { return std::sqrt(shot_ * signal + read_); }
+  float deviation(float signal) const { return std::sqrt(shot_ * std::max(signal, 0.0F) + read_); }
 
  private:
   static constexpr float kShotNoise = 6e-5F;  // one over the photons that are white

@@ -68,5 +68,13 @@ TEST(Photograph, NoiseFollowsFromTheSeed) {
   EXPECT_NE(std::memcmp(a.data, c.data, a.total() * a.elemSize()), 0);
 }
 
+TEST(Photograph, LightBelowZeroIsBlackAndNoAccident) {
+  const cv::Mat picture =
+      photograph(cv::Mat(8, 8, CV_32FC3, cv::Scalar::all(-0.5)), {.duration_s = 0.01F}, 1);
+  double brightest = 0.0;
+  cv::minMaxLoc(picture.reshape(1), nullptr, &brightest);
+  EXPECT_LT(brightest, 5.0);
+}
+
 }  // namespace
 }  // namespace samewhere::twin
