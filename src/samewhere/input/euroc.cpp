@@ -26,7 +26,8 @@ struct StampedLine {
   // double.
   double stamp_s() const {
     constexpr std::int64_t kNs_per_s = 1'000'000'000;
-    return static_cast<double>(stamp_ns / kNs_per_s) +
+    const std::int64_t whole_s = stamp_ns / kNs_per_s;
+    return static_cast<double>(whole_s) +
            static_cast<double>(stamp_ns % kNs_per_s) / static_cast<double>(kNs_per_s);
   }
 };

@@ -14,7 +14,7 @@ constexpr int kWidth_px = 320;
 constexpr int kHeight_px = 240;
 
 cv::Mat empty_sheet(int num_rows) {
-  return {num_rows * kHeight_px, kNumColumns * kWidth_px, CV_8UC3};
+  return cv::Mat(num_rows * kHeight_px, kNumColumns * kWidth_px, CV_8UC3);
 }
 
 // `place`: counts from the upper left, row by row.

@@ -86,7 +86,7 @@ std::string pgm(const Values& values, std::size_t num_frames, int max_value) {
 
 }  // namespace
 
-PartialFolder::PartialFolder(path folder)
+PartialFolder::PartialFolder(const path& folder)
     : folder_(without_trailing_slash(folder)), partial_(folder_.string() + ".partial") {
   require_free(folder_, "is there already, expected a name that is free");
   require_free(partial_, "was left by a run that was cut off (or is being written); remove it");

@@ -16,7 +16,7 @@ namespace samewhere::twin {
 class PartialFolder {
  public:
   // Throws InputError if either name is taken or the folder cannot be made.
-  explicit PartialFolder(std::filesystem::path folder);
+  explicit PartialFolder(const std::filesystem::path& folder);
   PartialFolder(const PartialFolder&) = delete;
   PartialFolder& operator=(const PartialFolder&) = delete;
   ~PartialFolder();  // without finish(): nothing remains

@@ -111,7 +111,7 @@ RTCRay to_embree(const Ray& ray, float max_reach) {
 }  // namespace
 
 std::optional<Hit> RayScene::first_hit(const Ray& ray) const {
-  RTCIntersectContext context;
+  RTCIntersectContext context{};
   rtcInitIntersectContext(&context);
   RTCRayHit asked{.ray = to_embree(ray, std::numeric_limits<float>::infinity()), .hit = {}};
   asked.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -123,13 +123,13 @@ std::optional<Hit> RayScene::first_hit(const Ray& ray) const {
 
 void RayScene::first_hits(const Eigen::Vector3f& origin,
                           std::span<const Eigen::Vector3f> directions, std::span<Hit> hits) const {
-  RTCIntersectContext context;
+  RTCIntersectContext context{};
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (std::size_t first = 0; first < directions.size(); first += kPacket) {
     const std::size_t count = std::min(kPacket, directions.size() - first);
     alignas(32) std::array<int, kPacket> valid{};
-    RTCRayHit8 asked;
+    RTCRayHit8 asked;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
     for (std::size_t i = 0; i < kPacket; ++i) {
       const Eigen::Vector3f& direction = directions[first + std::min(i, count - 1)];
       valid[i] = i < count ? -1 : 0;
@@ -158,7 +158,7 @@ void RayScene::first_hits(const Eigen::Vector3f& origin,
 
 bool RayScene::is_blocked(const Ray& ray) const {
   constexpr float kShortOfTheEnd = 0.999F;  // what lies at the end does not block
-  RTCIntersectContext context;
+  RTCIntersectContext context{};
   rtcInitIntersectContext(&context);
   RTCRay asked = to_embree(ray, kShortOfTheEnd);
   rtcOccluded1(impl_->scene.get(), &context, &asked);
