@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/core/csv.hpp>
+
 namespace samewhere::bench {
 namespace {
 
@@ -27,16 +29,10 @@ std::string text_line(const Row& row, const std::vector<std::size_t>& widths) {
   return line + "\n";
 }
 
-std::string csv_cell(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string quoted = "\"";
-  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string csv_line(const Row& row) {
   std::string line;
-  for (std::size_t i = 0; i < row.size(); ++i) line += (i == 0 ? "" : ",") + csv_cell(row[i]);
+  for (std::size_t i = 0; i < row.size(); ++i)
+    line += (i == 0 ? "" : ",") + core::csv_field(row[i]);
   return line + "\n";
 }
 

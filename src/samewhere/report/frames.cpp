@@ -3,20 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/core/csv.hpp>
 #include <samewhere/report/frames.hpp>
 
 namespace samewhere::report {
 namespace {
-
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of("\",\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
   if (!world_from_camera) return ",,,,,,";
@@ -45,7 +36,7 @@ std::string frames_csv(const std::vector<FrameRecord>& frames) {
                                      ? std::to_string(pose.reference_keyframe.index())
                                      : std::string();
     fmt::format_to(std::back_inserter(text), "{},{:.6f},{},{},{},{},{},{}\n", pose.frame.index(),
-                   pose.stamp_s, csv_field(frame.name), core::name_of(pose.status),
+                   pose.stamp_s, core::csv_field(frame.name), core::name_of(pose.status),
                    frame.world_from_camera ? 1 : 0, pose.num_inliers, keyframe,
                    pose_fields(frame.world_from_camera));
   }

@@ -73,14 +73,14 @@ std::string imu_yaml(const core::Imu& imu, double rate_hz) {
 void check_rig(const core::Frame& frame, const std::string& name) {
   if (frame.rig->is_calibrated() && frame.rig->cameras.size() == frame.images.size()) return;
   throw InputError(fmt::format(
-      "{}: is not calibrated, which EuRoC's sensor.yaml needs; expected a camera file", name));
+      "{}: {} pictures, {} calibrated cameras; EuRoC's sensor.yaml needs one camera file each",
+      name, frame.images.size(), frame.rig->cameras.size()));
 }
 
 void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists) {
   const std::string file = fmt::format("{}.png", stamp_ns(frame.stamp_s));
   for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
-    out.write(fmt::format("mav0/cam{}/data/{}", camera, file),
-              png_bytes(frame.images[camera], Effort::kFast));
+    out.write(fmt::format("mav0/cam{}/data/{}", camera, file), png_bytes(frame.images[camera]));
   }
   lists.pictures += fmt::format("{},{}\n", stamp_ns(frame.stamp_s), file);
   for (const core::ImuSample& sample : frame.imu_since_last) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/core/csv.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
@@ -32,19 +33,11 @@ void make_folders(const path& folder) {
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
 }
 
-// A field of a CSV file (RFC 4180): names are ours, but may hold anything.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string frames_csv(const std::vector<FrameTruth>& frames, const std::vector<double>& stamps_s) {
   std::string text = "frame,stamp_s,visit,room,floor\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     fmt::format_to(std::back_inserter(text), "{},{:.9f},{},{},{}\n", i, stamps_s[i],
-                   frames[i].visit, csv_field(frames[i].room), frames[i].floor);
+                   frames[i].visit, core::csv_field(frames[i].room), frames[i].floor);
   }
   return text;
 }
@@ -53,7 +46,7 @@ std::string loops_csv(const std::vector<TrueLoop>& loops) {
   std::string text = "query,match,overlap,confirmable,object\n";
   for (const auto& loop : loops) {
     fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{},{}\n", loop.query, loop.match,
-                   loop.overlap, loop.is_confirmable ? 1 : 0, csv_field(loop.object));
+                   loop.overlap, loop.is_confirmable ? 1 : 0, core::csv_field(loop.object));
   }
   return text;
 }

@@ -147,7 +147,7 @@ TEST_F(Dataset, AFullDiskIsNamedAndLeavesNothing) {
 TEST_F(Dataset, EurocNeedsACalibration) {
   TestSource source(2, 0, 1);
   EXPECT_THAT(complaint([&] { write_euroc_folder(source, target()); }),
-              AllOf(HasSubstr("test-walk"), HasSubstr("not calibrated")));
+              AllOf(HasSubstr("test-walk"), HasSubstr("calibrated cameras")));
   EXPECT_TRUE(is_root_empty());
   TestSource again(2, 0, 1);
   EXPECT_EQ(write_tum_folder(again, target()), Written::kComplete);

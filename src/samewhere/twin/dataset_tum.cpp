@@ -34,7 +34,7 @@ std::string camera_text(const core::PinholeRadtan& camera) {
 void add_picture(const PartialFolder& out, const char* folder, const core::Frame& frame,
                  const cv::Mat& picture, std::string& list) {
   const std::string file = fmt::format("{}/{:.6f}.png", folder, frame.stamp_s);
-  out.write(file, png_bytes(picture, Effort::kFast));
+  out.write(file, png_bytes(picture));
   list += fmt::format("{:.6f} {}\n", frame.stamp_s, file);
 }
 

@@ -47,13 +47,13 @@ void append_part(std::string_view kind, std::string_view png, std::string& file)
 std::string file_content(const Pictures& pictures) {
   std::string file(kMagic);
   for (const cv::Mat& image : pictures.images) {
-    append_part(kImage, png_bytes(image, Effort::kFast), file);
+    append_part(kImage, png_bytes(image), file);
   }
   if (pictures.depth_m) {
     const cv::Mat units = depth_units(*pictures.depth_m);
     core::require(cv::norm(depth_of_units(units), *pictures.depth_m, cv::NORM_INF) == 0.0,
                   "cached depth comes in whole units of 1/5000 m");
-    append_part(kDepth, png_bytes(units, Effort::kFast), file);
+    append_part(kDepth, png_bytes(units), file);
   }
   append_part("end", "", file);
   return file;

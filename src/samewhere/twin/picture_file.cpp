@@ -32,11 +32,11 @@ class PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
   ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
 
-  std::string write(const cv::Mat& picture, Effort effort) {
+  std::string write(const cv::Mat& picture) {
     std::vector<png_const_bytep> rows;
     for (int y = 0; y < picture.rows; ++y) rows.push_back(picture.ptr(y));
     guarded([&] {
-      write_header(picture, effort);
+      write_header(picture);
       for (const png_const_bytep row : rows) png_write_row(png_, row);
       png_write_end(png_, nullptr);
     });
@@ -44,10 +44,9 @@ class PngWriter {
   }
 
  private:
-  void write_header(const cv::Mat& picture, Effort effort) {
-    const bool is_fast = effort == Effort::kFast;
-    png_set_compression_level(png_, is_fast ? 1 : 6);
-    png_set_filter(png_, PNG_FILTER_TYPE_BASE, is_fast ? PNG_FILTER_SUB : PNG_ALL_FILTERS);
+  void write_header(const cv::Mat& picture) {
+    png_set_compression_level(png_, 1);
+    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(picture.cols),
                  static_cast<png_uint_32>(picture.rows), picture.depth() == CV_16U ? 16 : 8,
                  picture.channels() == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY,
@@ -80,9 +79,9 @@ class PngWriter {
 
 }  // namespace
 
-std::string png_bytes(const cv::Mat& picture, Effort effort) {
+std::string png_bytes(const cv::Mat& picture) {
   core::require(is_storable(picture), "a picture is 8-bit grey, 8-bit BGR or 16-bit grey");
-  return PngWriter().write(picture, effort);
+  return PngWriter().write(picture);
 }
 
 std::optional<cv::Mat> picture_of_png(std::string_view bytes) {

@@ -9,11 +9,9 @@
 
 namespace samewhere::twin {
 
-// How hard a PNG file is pressed: for people who copy it, or for ourselves who read it soon.
-enum class Effort : std::uint8_t { kSmall, kFast };
-
 // The bytes of a PNG file that holds the picture as it is: 8-bit grey, 8-bit BGR or 16-bit grey.
-std::string png_bytes(const cv::Mat& picture, Effort effort);
+// Pressed lightly: writing must not be slower than rendering.
+std::string png_bytes(const cv::Mat& picture);
 
 // The picture in the bytes of such a file; nothing if they are damaged or cut short.
 std::optional<cv::Mat> picture_of_png(std::string_view bytes);

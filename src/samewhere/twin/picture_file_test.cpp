@@ -26,19 +26,17 @@ TEST(PictureFile, PicturesComeBackAsTheyAre) {
   const cv::Mat colour = TestSource::random_picture(random);
   cv::Mat grey;
   cv::extractChannel(colour, grey, 1);
-  for (const Effort effort : {Effort::kSmall, Effort::kFast}) {
-    for (const cv::Mat& picture : {colour, grey, all_units()}) {
-      const auto back = picture_of_png(png_bytes(picture, effort));
-      ASSERT_TRUE(back);
-      EXPECT_TRUE(is_same(*back, picture)) << "type " << picture.type();
-    }
+  for (const cv::Mat& picture : {colour, grey, all_units()}) {
+    const auto back = picture_of_png(png_bytes(picture));
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(is_same(*back, picture)) << "type " << picture.type();
   }
 }
 
 TEST(PictureFile, DamageIsNoticed) {
   core::Random random(2);
   const cv::Mat picture = TestSource::random_picture(random);
-  const std::string good = png_bytes(picture, Effort::kFast);
+  const std::string good = png_bytes(picture);
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     core::Random damage(seed);
     std::string bytes = good;
