@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -42,12 +41,21 @@ bool has_sheet(const TwinCommand& command) {
   return !command.sheet.empty() || !command.similarity_sheet.empty();
 }
 
+void check_sheet(const std::string& file) {
+  if (file.empty() || file.ends_with(".jpg") || file.ends_with(".jpeg")) return;
+  throw core::InputError(file + ": a sheet is a JPEG file; expected a name that ends in .jpg");
+}
+
 void write_sheet(const std::string& file, const cv::Mat& sheet) {
-  if (!file.ends_with(".jpg") && !file.ends_with(".jpeg")) {
-    throw core::InputError(file + ": a sheet is a JPEG file; expected a name that ends in .jpg");
-  }
   core::write_file(file, report::jpeg_bytes(sheet, sheet.cols));
   fmt::print("{}\n", file);
+}
+
+void write_sheets(const TwinCommand& command, const twin::Walkthrough& walk) {
+  if (!command.sheet.empty()) write_sheet(command.sheet, twin::contact_sheet(walk));
+  if (!command.similarity_sheet.empty()) {
+    write_sheet(command.similarity_sheet, twin::similarity_sheet(walk.spec()));
+  }
 }
 
 void check(const TwinCommand& command) {
@@ -61,10 +69,12 @@ void check(const TwinCommand& command) {
   if (command.format != "tum" && command.format != "euroc") {
     throw core::InputError(fmt::format("--format {}: expected one of: tum, euroc", command.format));
   }
+  check_sheet(command.sheet);
+  check_sheet(command.similarity_sheet);
 }
 
 twin::Written write_folder(const TwinCommand& command, core::Source& source,
-                           const std::optional<twin::SideTables>& tables) {
+                           const twin::AskTables& tables) {
   return command.format == "tum" ? twin::write_tum_folder(source, command.out, tables)
                                  : twin::write_euroc_folder(source, command.out, tables);
 }
@@ -72,17 +82,16 @@ twin::Written write_folder(const TwinCommand& command, core::Source& source,
 int write_walk(const TwinCommand& command, const pipeline::Config& config) {
   const auto walk =
       std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
-  if (!command.sheet.empty()) write_sheet(command.sheet, twin::contact_sheet(*walk));
-  if (!command.similarity_sheet.empty()) {
-    write_sheet(command.similarity_sheet, twin::similarity_sheet(walk->spec()));
+  // the folder first: a name that is taken is told before anything is rendered
+  if (!command.out.empty()) {
+    const auto source = twin::open_twin(walk, config.twin);
+    const auto tables = [&walk] { return twin::SideTables{walk->truth(), walk->wheels()}; };
+    if (write_folder(command, *source, tables) == twin::Written::kInterrupted) return kInterrupted;
+    fmt::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
+               walk->num_frames(), command.source, walk->truth().loops.size(),
+               walk->truth().impostors.size());
   }
-  if (command.out.empty()) return kDone;
-  const auto source = twin::open_twin(walk, config.twin);
-  const twin::SideTables tables{.truth = walk->truth(), .wheels = walk->wheels()};
-  if (write_folder(command, *source, tables) == twin::Written::kInterrupted) return kInterrupted;
-  fmt::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
-             walk->num_frames(), command.source, tables.truth.loops.size(),
-             tables.truth.impostors.size());
+  write_sheets(command, *walk);
   return kDone;
 }
 
@@ -96,7 +105,7 @@ int write(const TwinCommand& command) {
     throw core::InputError(command.source + ": a sheet shows rendered buildings, twin:PRESET");
   }
   const auto source = pipeline::open_source(config);
-  if (write_folder(command, *source, std::nullopt) == twin::Written::kInterrupted) {
+  if (write_folder(command, *source, nullptr) == twin::Written::kInterrupted) {
     return kInterrupted;
   }
   fmt::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);

@@ -52,6 +52,20 @@ void expect_same_truth(const core::Truth& found, const core::Truth& expected, do
   }
   ASSERT_TRUE(found.places);
   EXPECT_EQ(found.places->values, expected.places->values);
+  EXPECT_FALSE(expected.impostors.empty());
+  EXPECT_EQ(found.impostors, expected.impostors);
+}
+
+void expect_same_inertial_truth(const std::vector<core::InertialTruth>& found,
+                                const std::vector<core::InertialTruth>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(found[i].stamp_s, expected[i].stamp_s, kEurocStep_s);
+    EXPECT_LT((found[i].velocity_m_s - expected[i].velocity_m_s).norm(), 1e-8);
+    EXPECT_LT((found[i].gyroscope_bias_rad_s - expected[i].gyroscope_bias_rad_s).norm(), 1e-11);
+    EXPECT_LT((found[i].accelerometer_bias_m_s2 - expected[i].accelerometer_bias_m_s2).norm(),
+              1e-8);
+  }
 }
 
 void expect_same_imu(const std::vector<core::ImuSample>& found,
@@ -75,6 +89,18 @@ void expect_same_rig(const core::Rig& found, const core::Rig& expected) {
   EXPECT_EQ(found.imu->gyroscope_noise_rad_s_sqrt_hz, expected.imu->gyroscope_noise_rad_s_sqrt_hz);
   EXPECT_EQ(found.imu->accelerometer_noise_m_s2_sqrt_hz,
             expected.imu->accelerometer_noise_m_s2_sqrt_hz);
+  EXPECT_EQ(found.imu->gyroscope_bias_walk_rad_s2_sqrt_hz,
+            expected.imu->gyroscope_bias_walk_rad_s2_sqrt_hz);
+  EXPECT_EQ(found.imu->accelerometer_bias_walk_m_s3_sqrt_hz,
+            expected.imu->accelerometer_bias_walk_m_s3_sqrt_hz);
+}
+
+twin::AskTables tables_of(const twin::TestSource& source) {
+  return [&source] {
+    return twin::SideTables{.truth = {.frames = std::vector<twin::FrameTruth>(kNumFrames),
+                                      .impostors = source.impostors()},
+                            .wheels = {}};
+  };
 }
 
 // By the format check, which knows nothing of our readers.
@@ -86,7 +112,8 @@ void expect_good_format(const std::filesystem::path& folder) {
 TEST(RoundTrip, ATumFolderComesBackAsItWas) {
   const input::TestFolder folder;
   twin::TestSource written(kNumFrames, 1, 3);
-  ASSERT_EQ(twin::write_tum_folder(written, folder.root() / "walk"), twin::Written::kComplete);
+  ASSERT_EQ(twin::write_tum_folder(written, folder.root() / "walk", tables_of(written)),
+            twin::Written::kComplete);
   const auto read = input::open_source(folder.root() / "walk", input::Config{});
   EXPECT_EQ(read->info().format, "TUM RGB-D");
   expect_good_format(folder.root() / "walk");
@@ -108,11 +135,13 @@ TEST(RoundTrip, AEurocFolderComesBackAsItWas) {
   for (const int num_cameras : {1, 2}) {
     const input::TestFolder folder;
     twin::TestSource written(kNumFrames, num_cameras, 4);
-    ASSERT_EQ(twin::write_euroc_folder(written, folder.root() / "walk"), twin::Written::kComplete);
+    ASSERT_EQ(twin::write_euroc_folder(written, folder.root() / "walk", tables_of(written)),
+              twin::Written::kComplete);
     const auto read = input::open_source(folder.root() / "walk", input::Config{});
     EXPECT_EQ(read->info().format, "EuRoC");
     expect_good_format(folder.root() / "walk");
     expect_same_truth(read->truth(), written.truth(), kEurocStep_s);
+    expect_same_inertial_truth(read->truth().inertial, written.truth().inertial);
     twin::TestSource expected(kNumFrames, num_cameras, 4);
     while (const auto frame = expected.next()) {
       const auto found = read->next();

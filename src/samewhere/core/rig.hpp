@@ -28,11 +28,14 @@ struct PinholeRadtan {
 // One alternative today; a fisheye model joins here.
 using Camera = std::variant<PinholeRadtan>;
 
-// Noise densities of an inertial unit and where it sits.
+// Where an inertial unit sits and how it errs: densities of its white noise and of the random walk
+// of its biases; 0: not known.
 struct Imu {
   Rigid3 body_from_imu;
   double gyroscope_noise_rad_s_sqrt_hz = 0.0;
   double accelerometer_noise_m_s2_sqrt_hz = 0.0;
+  double gyroscope_bias_walk_rad_s2_sqrt_hz = 0.0;
+  double accelerometer_bias_walk_m_s3_sqrt_hz = 0.0;
 };
 
 // The sensors of one body. Poses are body poses; camera i hangs on it by body_from_camera[i]. No

@@ -4,10 +4,12 @@
 #include <exception>
 #include <functional>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include <samewhere/core/channel.hpp>
+#include <samewhere/core/errors.hpp>
 
 namespace samewhere::core {
 
@@ -17,19 +19,20 @@ inline int num_hardware_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// A thread that runs one function to its end. An exception in it comes out of join(). The
-// destructor joins and swallows: whoever wants the exception calls join() first. Whoever owns
-// channels that the function waits on closes them first.
+// A thread that runs one function to its end. Throws InputError if the system refuses one more. An
+// exception in the function comes out of join(). The destructor joins and swallows: whoever wants
+// the exception calls join() first. Whoever owns channels that the function waits on closes them
+// first.
 class WorkerThread {
  public:
   explicit WorkerThread(std::function<void()> work)
-      : thread_([this, work = std::move(work)] {
+      : thread_(started([this, work = std::move(work)] {
           try {
             work();
           } catch (...) {
             error_ = std::current_exception();
           }
-        }) {}
+        })) {}
   WorkerThread(const WorkerThread&) = delete;
   WorkerThread& operator=(const WorkerThread&) = delete;
   ~WorkerThread() {
@@ -42,6 +45,16 @@ class WorkerThread {
   }
 
  private:
+  template <class Work>
+  static std::thread started(Work&& work) {
+    try {
+      return std::thread(std::forward<Work>(work));
+    } catch (const std::system_error& error) {
+      throw InputError("a thread cannot be started: " + error.code().message() +
+                       "; expected room for a few threads on this machine");
+    }
+  }
+
   std::exception_ptr error_;
   std::thread thread_;  // last: it starts when everything above is ready
 };

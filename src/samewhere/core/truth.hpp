@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <samewhere/core/rigid3.hpp>
 
 namespace samewhere::core {
@@ -16,6 +18,14 @@ struct StampedPose {
 };
 
 using Trajectory = std::vector<StampedPose>;  // stamps ascend strictly
+
+// How the body moves at one moment, and by how much its inertial unit errs then, noise apart.
+struct InertialTruth {
+  double stamp_s = 0.0;
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();             // of the body, in the world
+  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();     // in body axes
+  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();  // in body axes
+};
 
 // Whether two frames show the same place (docs/evaluation.md, protocol pr-v2).
 enum class PlaceTruth : std::uint8_t { kDifferent = 0, kSame = 1, kNear = 2 };
@@ -41,7 +51,8 @@ struct FramePair {
 
 // What is known to be true about a source; each part may be missing.
 struct Truth {
-  Trajectory trajectory;  // empty: not known
+  Trajectory trajectory;                // empty: not known
+  std::vector<InertialTruth> inertial;  // at the stamps of the trajectory; empty: not known
   std::optional<PlaceTruthMatrix> places;
   // Frames of different places that look alike by construction, as only a made-up building can
   // tell; ascending, no pair twice. Empty: none, or not known.

@@ -123,17 +123,39 @@ core::Rigid3 world_from_sensor(const StampedLine& row) {
   return {rotation.normalized(), {n[0], n[1], n[2]}};
 }
 
-// Of camera 0, from the poses of the sensor that the truth belongs to.
-core::Trajectory read_poses(const path& truth, const core::Rigid3& body_from_camera) {
+core::InertialTruth inertial_truth(const StampedLine& row, const core::Rigid3& body_from_sensor) {
+  const std::vector<double> n =
+      numbers_of(row, 16, "x y z qw qx qy qz vx vy vz bwx bwy bwz bax bay baz");
+  return {
+      .stamp_s = row.stamp_s(),
+      .velocity_m_s = {n[7], n[8], n[9]},
+      .gyroscope_bias_rad_s = body_from_sensor.rotation * Eigen::Vector3d(n[10], n[11], n[12]),
+      .accelerometer_bias_m_s2 = body_from_sensor.rotation * Eigen::Vector3d(n[13], n[14], n[15])};
+}
+
+struct States {
+  core::Trajectory trajectory;  // of camera 0
+  std::vector<core::InertialTruth> inertial;
+};
+
+// From those of the sensor that the truth belongs to. There is inertial truth where the file has
+// its columns and the sensor sits where the body is: the velocity of another point would tell the
+// body's only together with the turning.
+States read_states(const path& truth, const core::Rigid3& body_from_camera) {
   const core::Rigid3 body_from_sensor = is_there(truth / "sensor.yaml")
                                             ? read_euroc_body_from_sensor(truth / "sensor.yaml")
                                             : core::Rigid3{};
   const core::Rigid3 sensor_from_camera = inverse(body_from_sensor) * body_from_camera;
-  core::Trajectory trajectory;
-  for (const StampedLine& row : read_stamped_lines(truth / "data.csv")) {
-    trajectory.push_back({row.stamp_s(), world_from_sensor(row) * sensor_from_camera});
+  const std::vector<StampedLine> rows = read_stamped_lines(truth / "data.csv");
+  constexpr std::size_t kOnlyPose = 8;
+  const bool has_more = !rows.empty() && rows.front().line.words.size() > kOnlyPose;
+  const bool is_at_body = body_from_sensor.translation.isZero();
+  States states;
+  for (const StampedLine& row : rows) {
+    states.trajectory.push_back({row.stamp_s(), world_from_sensor(row) * sensor_from_camera});
+    if (has_more && is_at_body) states.inertial.push_back(inertial_truth(row, body_from_sensor));
   }
-  return trajectory;
+  return states;
 }
 
 }  // namespace
@@ -164,7 +186,9 @@ std::optional<Recording> find_euroc(const path& folder, const Config& config) {
       read_truth(is_mav0 ? whole.parent_path() : folder, static_cast<int>(rows.size()));
   const path truth = mav / "state_groundtruth_estimate0";
   if (is_folder(truth)) {
-    recording.truth.trajectory = read_poses(truth, recording.rig.body_from_camera.front());
+    States states = read_states(truth, recording.rig.body_from_camera.front());
+    recording.truth.trajectory = std::move(states.trajectory);
+    recording.truth.inertial = std::move(states.inertial);
   }
   return recording;
 }

@@ -61,6 +61,11 @@ class SensorFile {
     throw InputError(fmt::format("{}: found {}, expected at least 0", line(key).place, density));
   }
 
+  // 0 if the file does not tell.
+  double noise_density_if_told(const std::string& key) const {
+    return root_[key] ? noise_density(key) : 0.0;
+  }
+
   core::Rigid3 body_from_sensor() const {
     const YAML::Node matrix = found(root_, "T_BS");
     const core::TextLine rows =
@@ -148,9 +153,13 @@ EurocCamera read_euroc_camera(const path& file) {
 
 core::Imu read_euroc_imu(const path& file) {
   const SensorFile sensor(file);
-  return {.body_from_imu = sensor.body_from_sensor(),
-          .gyroscope_noise_rad_s_sqrt_hz = sensor.noise_density("gyroscope_noise_density"),
-          .accelerometer_noise_m_s2_sqrt_hz = sensor.noise_density("accelerometer_noise_density")};
+  return {
+      .body_from_imu = sensor.body_from_sensor(),
+      .gyroscope_noise_rad_s_sqrt_hz = sensor.noise_density("gyroscope_noise_density"),
+      .accelerometer_noise_m_s2_sqrt_hz = sensor.noise_density("accelerometer_noise_density"),
+      .gyroscope_bias_walk_rad_s2_sqrt_hz = sensor.noise_density_if_told("gyroscope_random_walk"),
+      .accelerometer_bias_walk_m_s3_sqrt_hz =
+          sensor.noise_density_if_told("accelerometer_random_walk")};
 }
 
 core::Rigid3 read_euroc_body_from_sensor(const path& file) {

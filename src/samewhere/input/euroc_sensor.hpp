@@ -18,6 +18,7 @@ struct EurocCamera {
 // camera_model pinhole with distortion_model radial-tangential; other models are refused.
 EurocCamera read_euroc_camera(const std::filesystem::path& file);
 
+// Random walks that the file does not tell are 0.
 core::Imu read_euroc_imu(const std::filesystem::path& file);
 
 // Of any sensor.

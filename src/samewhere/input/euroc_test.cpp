@@ -59,12 +59,13 @@ class Euroc : public Open {
     folder_.write("mav0/imu0/sensor.yaml",
                   "%YAML:1.0\n"
                   "T_BS:\n  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1]\n"
-                  "gyroscope_noise_density: 1.6968e-04\naccelerometer_noise_density: 2.0e-3\n");
+                  "gyroscope_noise_density: 1.6968e-04\naccelerometer_noise_density: 2.0e-3\n"
+                  "gyroscope_random_walk: 1.9393e-05\n");
     write_imu_samples();
     folder_.write("mav0/state_groundtruth_estimate0/data.csv",
                   "#timestamp, p_RS_R_x [m], ...\n"
                   "1403636579758555392,4.5,-1.75,0.75,0.5,-0.5,0.5,-0.5,0,0,0,0,0,0,0,0,0\n"
-                  "1403636579763555584,1,2,3,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
+                  "1403636579763555584,1,2,3,1,0,0,0,.1,-.2,.3,1e-3,2e-3,3e-3,.04,.05,-.06\n");
   }
 
   void write_grey(const std::string& name, int grey) const {
@@ -140,6 +141,8 @@ TEST_F(Euroc, TheRigIsWhatTheSensorFilesSay) {
   EXPECT_EQ(rig.imu->body_from_imu.translation.z(), 0.5);
   EXPECT_EQ(rig.imu->gyroscope_noise_rad_s_sqrt_hz, 1.6968e-04);
   EXPECT_EQ(rig.imu->accelerometer_noise_m_s2_sqrt_hz, 2.0e-3);
+  EXPECT_EQ(rig.imu->gyroscope_bias_walk_rad_s2_sqrt_hz, 1.9393e-05);
+  EXPECT_EQ(rig.imu->accelerometer_bias_walk_m_s3_sqrt_hz, 0.0) << "the file does not tell";
 }
 
 TEST_F(Euroc, TheTruthIsThePoseOfCamera0) {
@@ -155,6 +158,24 @@ TEST_F(Euroc, TheTruthIsThePoseOfCamera0) {
   EXPECT_LT((x_of_body + Eigen::Vector3d::UnitY()).norm(), 1e-12);
   EXPECT_LT((truth[0].world_from_camera.rotation * -Eigen::Vector3d::UnitY() - x_of_body).norm(),
             1e-12);
+}
+
+TEST_F(Euroc, VelocitiesAndBiasesAreThoseOfTheBody) {
+  const core::Truth truth = open()->truth();
+  ASSERT_EQ(truth.inertial.size(), 2U);
+  EXPECT_EQ(truth.inertial[1].stamp_s, truth.trajectory[1].stamp_s);
+  EXPECT_EQ(truth.inertial[1].velocity_m_s, Eigen::Vector3d(0.1, -0.2, 0.3));
+  EXPECT_EQ(truth.inertial[1].gyroscope_bias_rad_s, Eigen::Vector3d(1e-3, 2e-3, 3e-3));
+  EXPECT_EQ(truth.inertial[1].accelerometer_bias_m_s2, Eigen::Vector3d(0.04, 0.05, -0.06));
+  // a sensor that lies turned within the body: x of the sensor is y of the body
+  const std::string sensor = "mav0/state_groundtruth_estimate0/sensor.yaml";
+  folder_.write(sensor, "T_BS: {data: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n");
+  const core::InertialTruth turned = open()->truth().inertial.at(1);
+  EXPECT_LT((turned.gyroscope_bias_rad_s - Eigen::Vector3d(-2e-3, 1e-3, 3e-3)).norm(), 1e-15);
+  EXPECT_EQ(turned.velocity_m_s, Eigen::Vector3d(0.1, -0.2, 0.3)) << "in the world";
+  // one that sits elsewhere moves otherwise
+  folder_.write(sensor, "T_BS: {data: [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n");
+  EXPECT_THAT(open()->truth().inertial, IsEmpty());
 }
 
 TEST_F(Euroc, TheFolderWithinIsTakenToo) {
@@ -239,6 +260,9 @@ TEST_F(Euroc, BrokenSamplesAndPosesAreNamedWithTheirLine) {
   const std::string poses = "mav0/state_groundtruth_estimate0/data.csv";
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0\n"), HasSubstr("found 7 values"));
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,x\n"), HasSubstr("'x'"));
+  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
+              HasSubstr("found 16 values"));
+  EXPECT_EQ(complaint_with(poses, "10,1,2,3,1,0,0,0\n"), "no error") << "poses alone";
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,2,0,0,0\n"),
               AllOf(HasSubstr("line 1"), HasSubstr("norm 2")));
 }
@@ -268,6 +292,8 @@ TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
   const std::string imu = core::read_file(folder_.at("mav0/imu0/sensor.yaml"));
   EXPECT_THAT(complaint_with("mav0/imu0/sensor.yaml", replaced(imu, "2.0e-3", "-1")),
               AllOf(HasSubstr("accelerometer_noise_density"), HasSubstr("-1")));
+  EXPECT_THAT(complaint_with("mav0/imu0/sensor.yaml", replaced(imu, "1.9393e-05", "-2")),
+              AllOf(HasSubstr("gyroscope_random_walk"), HasSubstr("-2")));
 }
 
 TEST_F(Euroc, DamagedSensorFilesNeverCrash) {

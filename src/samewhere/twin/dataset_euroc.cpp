@@ -66,8 +66,11 @@ std::string imu_yaml(const core::Imu& imu, double rate_hz) {
          fmt::format(
              "rate_hz: {:.6g}\n"
              "gyroscope_noise_density: {} # rad / s / sqrt(Hz)\n"
-             "accelerometer_noise_density: {} # m / s^2 / sqrt(Hz)\n",
-             rate_hz, imu.gyroscope_noise_rad_s_sqrt_hz, imu.accelerometer_noise_m_s2_sqrt_hz);
+             "gyroscope_random_walk: {} # rad / s^2 / sqrt(Hz)\n"
+             "accelerometer_noise_density: {} # m / s^2 / sqrt(Hz)\n"
+             "accelerometer_random_walk: {} # m / s^3 / sqrt(Hz)\n",
+             rate_hz, imu.gyroscope_noise_rad_s_sqrt_hz, imu.gyroscope_bias_walk_rad_s2_sqrt_hz,
+             imu.accelerometer_noise_m_s2_sqrt_hz, imu.accelerometer_bias_walk_m_s3_sqrt_hz);
 }
 
 void check_rig(const core::Frame& frame, const std::string& name) {
@@ -95,7 +98,16 @@ void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists)
   lists.rig = frame.rig;
 }
 
-Eigen::Vector3d velocity_m_s(const core::Trajectory& bodies, std::size_t i) {
+core::Trajectory body_poses(const core::Trajectory& cameras, const core::Rigid3& body_from_camera) {
+  const core::Rigid3 camera_from_body = inverse(body_from_camera);
+  core::Trajectory bodies;
+  for (const auto& pose : cameras) {
+    bodies.push_back({pose.stamp_s, pose.world_from_camera * camera_from_body});
+  }
+  return bodies;
+}
+
+Eigen::Vector3d mean_velocity_m_s(const core::Trajectory& bodies, std::size_t i) {
   const auto& before = bodies[i == 0 ? 0 : i - 1];
   const auto& after = bodies[std::min(i + 1, bodies.size() - 1)];
   const double duration_s = after.stamp_s - before.stamp_s;
@@ -105,10 +117,18 @@ Eigen::Vector3d velocity_m_s(const core::Trajectory& bodies, std::size_t i) {
   return way_m / duration_s;
 }
 
-std::string poses_csv(core::Trajectory cameras, const core::Rigid3& body_from_camera) {
-  core::Trajectory& bodies = cameras;
-  for (auto& pose : bodies)
-    pose.world_from_camera = pose.world_from_camera * inverse(body_from_camera);
+// What poses alone tell.
+std::vector<core::InertialTruth> by_differences(const core::Trajectory& bodies) {
+  std::vector<core::InertialTruth> states;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    states.push_back({.stamp_s = bodies[i].stamp_s, .velocity_m_s = mean_velocity_m_s(bodies, i)});
+  }
+  return states;
+}
+
+std::string states_csv(const core::Trajectory& bodies,
+                       const std::vector<core::InertialTruth>& states) {
+  core::require(states.size() == bodies.size(), "inertial truth is known for every pose");
   std::string text =
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
       "q_RS_z [], v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1], "
@@ -117,11 +137,14 @@ std::string poses_csv(core::Trajectory cameras, const core::Rigid3& body_from_ca
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Eigen::Vector3d& t = bodies[i].world_from_camera.translation;
     const Eigen::Quaterniond& q = bodies[i].world_from_camera.rotation;
-    const Eigen::Vector3d v = velocity_m_s(bodies, i);
+    const Eigen::Vector3d& v = states[i].velocity_m_s;
+    const Eigen::Vector3d& w = states[i].gyroscope_bias_rad_s;
+    const Eigen::Vector3d& a = states[i].accelerometer_bias_m_s2;
     fmt::format_to(std::back_inserter(text), "{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},",
                    stamp_ns(bodies[i].stamp_s), t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
-    fmt::format_to(std::back_inserter(text), "{:.6f},{:.6f},{:.6f},0,0,0,0,0,0\n", v.x(), v.y(),
-                   v.z());
+    fmt::format_to(std::back_inserter(text),
+                   "{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.12f},{:.9f},{:.9f},{:.9f}\n", v.x(),
+                   v.y(), v.z(), w.x(), w.y(), w.z(), a.x(), a.y(), a.z());
   }
   return text;
 }
@@ -145,21 +168,23 @@ void write_imu(const PartialFolder& out, const Lists& lists) {
   out.write("mav0/imu0/sensor.yaml", imu_yaml(*lists.rig->imu, mean_rate_hz(lists.imu_stamps_s)));
 }
 
-void write_poses(const PartialFolder& out, const core::Trajectory& trajectory,
-                 const core::Rig& rig) {
-  if (trajectory.empty()) return;
+void write_states(const PartialFolder& out, const core::Truth& known, const core::Rig& rig) {
+  if (known.trajectory.empty()) return;
   const std::string folder = "mav0/state_groundtruth_estimate0/";
-  out.write(folder + "data.csv", poses_csv(trajectory, rig.body_from_camera.front()));
-  out.write(folder + "sensor.yaml",
-            "sensor_type: visual-inertial\ncomment: exact poses; velocities by central "
-            "differences; biases not known, written as 0\n" +
-                transform_yaml(core::Rigid3{}));
+  const core::Trajectory bodies = body_poses(known.trajectory, rig.body_from_camera.front());
+  const bool is_exact = !known.inertial.empty();
+  out.write(folder + "data.csv",
+            states_csv(bodies, is_exact ? known.inertial : by_differences(bodies)));
+  const char* const comment =
+      is_exact ? "exact" : "velocities by central differences; biases not known, written as 0";
+  out.write(folder + "sensor.yaml", fmt::format("sensor_type: visual-inertial\ncomment: {}\n{}",
+                                                comment, transform_yaml(core::Rigid3{})));
 }
 
 }  // namespace
 
 Written write_euroc_folder(core::Source& source, const std::filesystem::path& folder,
-                           const std::optional<SideTables>& tables) {
+                           const AskTables& tables) {
   PartialFolder out(folder);
   Lists lists;
   const std::string name = source.info().name;
@@ -172,7 +197,7 @@ Written write_euroc_folder(core::Source& source, const std::filesystem::path& fo
   const core::Truth known = source.truth();
   write_cameras(out, lists);
   write_imu(out, lists);
-  write_poses(out, known.trajectory, *lists.rig);
+  write_states(out, known, *lists.rig);
   out.write("mav0/body.yaml", "comment: samewhere\n");
   write_truth(out, lists.stamps_s, known.places, tables);
   out.finish();

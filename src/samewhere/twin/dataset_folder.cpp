@@ -16,9 +16,12 @@ namespace {
 using core::InputError;
 using std::filesystem::path;
 
-// "out/" and "out" are the same folder, and ".partial" goes behind its name.
-path without_trailing_slash(const path& folder) {
-  return folder.has_filename() ? folder : folder.parent_path();
+// "out/", "out" and "new/../out" are the same folder, and ".partial" goes behind its name.
+path plain_name(const path& folder) {
+  std::error_code error;
+  const path plain = std::filesystem::weakly_canonical(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot be found: " + error.message());
+  return plain.has_filename() ? plain : plain.parent_path();
 }
 
 void require_free(const path& name, const char* why) {
@@ -80,7 +83,7 @@ std::string pgm(const Values& values, std::size_t num_frames, int max_value) {
 }  // namespace
 
 PartialFolder::PartialFolder(const path& folder)
-    : folder_(without_trailing_slash(folder)), partial_(folder_.string() + ".partial") {
+    : folder_(plain_name(folder)), partial_(folder_.string() + ".partial") {
   require_free(folder_, "is there already, expected a name that is free");
   require_free(partial_, "was left by a run that was cut off (or is being written); remove it");
   make_folders(partial_);
@@ -119,17 +122,17 @@ Written write_each_frame(core::Source& source,
 }
 
 void write_truth(const PartialFolder& out, const std::vector<double>& stamps_s,
-                 const std::optional<core::PlaceTruthMatrix>& places,
-                 const std::optional<SideTables>& tables) {
+                 const std::optional<core::PlaceTruthMatrix>& places, const AskTables& ask_tables) {
   if (places) out.write("same_place.pgm", pgm(places->values, stamps_s.size(), 2));
-  if (!tables) return;
-  const WalkTruth& truth = tables->truth;
+  if (!ask_tables) return;
+  const SideTables tables = ask_tables();
+  const WalkTruth& truth = tables.truth;
   core::require(truth.frames.size() == stamps_s.size(), "there is one row of truth per frame");
   out.write("frames.csv", frames_csv(truth.frames, stamps_s));
   out.write("loops.csv", loops_csv(truth.loops));
   out.write("impostors.csv", impostors_csv(truth.impostors));
   if (!truth.overlap.empty()) out.write("overlap.pgm", pgm(truth.overlap, stamps_s.size(), 255));
-  if (!tables->wheels.empty()) out.write("wheels.csv", wheels_csv(tables->wheels));
+  if (!tables.wheels.empty()) out.write("wheels.csv", wheels_csv(tables.wheels));
 }
 
 }  // namespace samewhere::twin

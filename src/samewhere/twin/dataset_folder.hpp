@@ -37,7 +37,6 @@ Written write_each_frame(core::Source& source, const std::function<void(const co
 
 // frames.csv and so on (dataset.hpp); stamps_s are those of all frames.
 void write_truth(const PartialFolder& out, const std::vector<double>& stamps_s,
-                 const std::optional<core::PlaceTruthMatrix>& places,
-                 const std::optional<SideTables>& tables);
+                 const std::optional<core::PlaceTruthMatrix>& places, const AskTables& tables);
 
 }  // namespace samewhere::twin

@@ -1,6 +1,7 @@
 #include <csignal>
 #include <functional>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -61,7 +62,7 @@ class Dataset : public testing::Test {
 
 TEST_F(Dataset, ATumFolderHoldsTheFilesOfTheFormat) {
   TestSource source(3, 1, 1);
-  ASSERT_EQ(write_tum_folder(source, root_ / "walk/", std::nullopt), Written::kComplete);
+  ASSERT_EQ(write_tum_folder(source, root_ / "walk/"), Written::kComplete);
   EXPECT_FALSE(std::filesystem::exists(root_ / "walk.partial"));
   EXPECT_TRUE(std::filesystem::exists(target() / "rgb/2.066667.png"));
   EXPECT_TRUE(std::filesystem::exists(target() / "depth/2.133333.png"));
@@ -81,7 +82,7 @@ TEST_F(Dataset, ATumFolderHoldsTheFilesOfTheFormat) {
 
 TEST_F(Dataset, AEurocFolderHoldsTheFilesOfTheFormat) {
   TestSource source(3, 2, 1);
-  ASSERT_EQ(write_euroc_folder(source, target(), std::nullopt), Written::kComplete);
+  ASSERT_EQ(write_euroc_folder(source, target()), Written::kComplete);
   for (const char* name :
        {"body.yaml", "cam0/sensor.yaml", "cam1/sensor.yaml", "imu0/data.csv", "imu0/sensor.yaml",
         "cam1/data/2066666667.png", "state_groundtruth_estimate0/sensor.yaml"}) {
@@ -103,7 +104,7 @@ TEST_F(Dataset, TruthIsWrittenAsTables) {
   tables.wheels = {{0.02, 0.01, -0.001}};
   truth.loops = {{1, 0, 0.75, true, "door 12"}, {1, 0, 0.4, false, ""}};
   truth.overlap = {255, 10, 13, 255};
-  ASSERT_EQ(write_tum_folder(source, target(), tables), Written::kComplete);
+  ASSERT_EQ(write_tum_folder(source, target(), [&] { return tables; }), Written::kComplete);
   EXPECT_EQ(core::read_file(target() / "frames.csv"),
             "frame,stamp_s,visit,room,floor\n0,2.000000000,0,corridor 1,0\n"
             "1,2.066666667,1,\"a \"\"lab\"\", say\",-1\n");
@@ -113,6 +114,53 @@ TEST_F(Dataset, TruthIsWrittenAsTables) {
   EXPECT_EQ(core::read_file(target() / "wheels.csv"),
             "stamp_s,forward_m,turned_rad\n0.020000000,0.010000000,-0.001000000\n");
   EXPECT_EQ(core::read_file(target() / "overlap.pgm"), "P5\n2 2\n255\n\xff\x0a\x0d\xff");
+}
+
+TEST_F(Dataset, InertialTruthIsWrittenAsItIs) {
+  TestSource source(3, 1, 1);
+  ASSERT_EQ(write_euroc_folder(source, target()), Written::kComplete);
+  const core::InertialTruth second = source.truth().inertial[1];
+  const Eigen::Vector3d& v = second.velocity_m_s;
+  const Eigen::Vector3d& w = second.gyroscope_bias_rad_s;
+  const Eigen::Vector3d& a = second.accelerometer_bias_m_s2;
+  EXPECT_THAT(core::read_file(target() / "mav0/state_groundtruth_estimate0/data.csv"),
+              HasSubstr(fmt::format(
+                  ",{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.12f},{:.9f},{:.9f},{:.9f}\n2133333333,",
+                  v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), a.x(), a.y(), a.z())));
+  EXPECT_THAT(core::read_file(target() / "mav0/state_groundtruth_estimate0/sensor.yaml"),
+              HasSubstr("comment: exact\n"));
+  EXPECT_THAT(core::read_file(target() / "mav0/imu0/sensor.yaml"),
+              AllOf(HasSubstr("\ngyroscope_random_walk: 1.9e-05 "),
+                    HasSubstr("\naccelerometer_random_walk: 0.003 ")));
+}
+
+TEST_F(Dataset, ANameThatWindsIsTheOneThatItLeadsTo) {
+  TestSource first(2, 1, 1);
+  EXPECT_THAT(complaint([&] { write_tum_folder(first, root_ / "new/.."); }),
+              HasSubstr("is there already"));
+  EXPECT_TRUE(is_root_empty());
+  TestSource second(2, 1, 1);
+  EXPECT_EQ(write_tum_folder(second, root_ / "new/../walk"), Written::kComplete);
+  EXPECT_TRUE(std::filesystem::exists(target() / "rgb.txt"));
+}
+
+TEST_F(Dataset, TablesAreAskedForOnceAndNotBeforeTheNameIsClaimed) {
+  int num_asked = 0;
+  const AskTables tables = [&] {
+    ++num_asked;
+    return SideTables{.truth = {.frames = std::vector<FrameTruth>(2)}, .wheels = {}};
+  };
+  core::write_file(target(), "mine");
+  bool is_source_asked = false;
+  BreakingSource source([&] { is_source_asked = true; });
+  EXPECT_THAT(complaint([&] { write_tum_folder(source, target(), tables); }),
+              HasSubstr("is there already"));
+  EXPECT_EQ(num_asked, 0);
+  EXPECT_FALSE(is_source_asked);
+  std::filesystem::remove(target());
+  TestSource other(2, 1, 1);
+  EXPECT_EQ(write_euroc_folder(other, target(), tables), Written::kComplete);
+  EXPECT_EQ(num_asked, 1);
 }
 
 TEST_F(Dataset, WhatIsThereAlreadyIsNotTouched) {

@@ -55,7 +55,7 @@ void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists)
 }  // namespace
 
 Written write_tum_folder(core::Source& source, const std::filesystem::path& folder,
-                         const std::optional<SideTables>& tables) {
+                         const AskTables& tables) {
   PartialFolder out(folder);
   Lists lists;
   const auto take = [&](const core::Frame& frame) { add_frame(out, frame, lists); };

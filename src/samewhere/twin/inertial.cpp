@@ -136,10 +136,28 @@ std::vector<InertialBias> inertial_biases(const Motion& motion, const InertialNo
   return biases;
 }
 
+std::vector<core::InertialTruth> inertial_truth(const Motion& motion,
+                                                const std::vector<InertialBias>& biases,
+                                                const std::vector<double>& stamps_s) {
+  std::vector<core::InertialTruth> truth;
+  for (const double stamp_s : stamps_s) {
+    const auto at =
+        static_cast<std::size_t>(std::floor((stamp_s + kStampTolerance_s) * kImuRate_hz));
+    core::require(at < biases.size(), "inertial truth is asked for within the motion");
+    truth.push_back({.stamp_s = stamp_s,
+                     .velocity_m_s = motion.velocity_m_s(stamp_s),
+                     .gyroscope_bias_rad_s = biases[at].gyroscope_rad_s,
+                     .accelerometer_bias_m_s2 = biases[at].accelerometer_m_s2});
+  }
+  return truth;
+}
+
 core::Imu imu_description(const InertialNoise& noise) {
   return {.body_from_imu = {},
           .gyroscope_noise_rad_s_sqrt_hz = noise.gyroscope_noise_rad_s_sqrt_hz,
-          .accelerometer_noise_m_s2_sqrt_hz = noise.accelerometer_noise_m_s2_sqrt_hz};
+          .accelerometer_noise_m_s2_sqrt_hz = noise.accelerometer_noise_m_s2_sqrt_hz,
+          .gyroscope_bias_walk_rad_s2_sqrt_hz = noise.gyroscope_bias_walk_rad_s2_sqrt_hz,
+          .accelerometer_bias_walk_m_s3_sqrt_hz = noise.accelerometer_bias_walk_m_s3_sqrt_hz};
 }
 
 core::Vector6d InertialState::pose_sigma() const {

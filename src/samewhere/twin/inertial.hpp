@@ -7,6 +7,7 @@
 
 #include <samewhere/core/frame.hpp>
 #include <samewhere/core/rig.hpp>
+#include <samewhere/core/truth.hpp>
 #include <samewhere/twin/motion.hpp>
 
 namespace samewhere::twin {
@@ -43,7 +44,13 @@ std::vector<core::ImuSample> inertial_samples(const Motion& motion, const Inerti
 std::vector<InertialBias> inertial_biases(const Motion& motion, const InertialNoise& noise,
                                           std::uint64_t seed);
 
-// The unit as a rig describes it: at the body, with the noise densities.
+// True at these stamps, which ascend and lie within the motion: the body's velocity, and the biases
+// of the last sample up to then.
+std::vector<core::InertialTruth> inertial_truth(const Motion& motion,
+                                                const std::vector<InertialBias>& biases,
+                                                const std::vector<double>& stamps_s);
+
+// The unit as a rig describes it: at the body, with the noise densities and the walk of the biases.
 core::Imu imu_description(const InertialNoise& noise);
 
 // Order of an InertialState's errors: position (world, m), rotation (body axes, rad), velocity

@@ -201,10 +201,31 @@ TEST(Inertial, IntegrationBetweenSamplesIsRefused) {
   EXPECT_THROW(integrated(true_state(standing, 1.0, {}), samples, {}, 0.5), core::ContractError);
 }
 
+// Velocity by the motion, biases by the samples: a unit that stands measures nothing else.
+TEST(Inertial, TheTruthAtAFrameIsTheVelocityAndTheBiasOfTheLastSample) {
+  InertialNoise noise;
+  noise.gyroscope_noise_rad_s_sqrt_hz = 0.0;
+  noise.accelerometer_noise_m_s2_sqrt_hz = 0.0;
+  const Motion standing({.steps = {Stand{2.0}}}, 1);
+  const auto samples = inertial_samples(standing, noise, 5);
+  const auto truth = inertial_truth(standing, inertial_biases(standing, noise, 5), {0.0, 0.0667});
+  ASSERT_EQ(truth.size(), 2U);
+  EXPECT_EQ(truth[1].stamp_s, 0.0667);
+  for (const auto& [state, sample] : {std::pair(truth[0], samples[0]), {truth[1], samples[13]}}) {
+    const Eigen::Vector3d turning_rad_s =
+        sample.angular_velocity_rad_s - standing.angular_velocity_rad_s(sample.stamp_s);
+    EXPECT_LT((state.gyroscope_bias_rad_s - turning_rad_s).norm(), 1e-12);
+    EXPECT_GT(state.gyroscope_bias_rad_s.norm(), 1e-4);
+    EXPECT_EQ(state.velocity_m_s, standing.velocity_m_s(state.stamp_s));
+  }
+}
+
 TEST(Inertial, TheRigTellsWhereTheUnitSitsAndHowNoisyItIs) {
   const core::Imu imu = imu_description({});
   EXPECT_EQ(imu.gyroscope_noise_rad_s_sqrt_hz, 1.7e-4);
   EXPECT_EQ(imu.accelerometer_noise_m_s2_sqrt_hz, 2.0e-3);
+  EXPECT_EQ(imu.gyroscope_bias_walk_rad_s2_sqrt_hz, 1.9e-5);
+  EXPECT_EQ(imu.accelerometer_bias_walk_m_s3_sqrt_hz, 3.0e-3);
   EXPECT_EQ(imu.body_from_imu.matrix(), Eigen::Matrix4d::Identity());
 }
 

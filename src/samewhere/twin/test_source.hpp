@@ -13,10 +13,11 @@
 
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/source.hpp>
+#include <samewhere/twin/truth.hpp>
 
 namespace samewhere::twin {
 
-// A source of small random pictures with depth, poses and inertial samples, all of one seed. For
+// A source of small random pictures with depth, inertial samples and truth, all of one seed. For
 // tests only.
 class TestSource : public core::Source {
  public:
@@ -30,6 +31,11 @@ class TestSource : public core::Source {
     core::Random random(core::seed_of(seed, "poses", 0));
     for (int i = 0; i < num_frames; ++i) {
       truth_.trajectory.push_back({stamp_s(i), random_pose(random, 3.0)});
+      truth_.inertial.push_back({.stamp_s = stamp_s(i),
+                                 .velocity_m_s = random_vector(random),
+                                 .gyroscope_bias_rad_s = 1e-3 * random_vector(random),
+                                 .accelerometer_bias_m_s2 = 0.1 * random_vector(random)});
+      if (i > 1) truth_.impostors.push_back({i, i - 2});
     }
     truth_.places = core::PlaceTruthMatrix{num_frames, {}};
     for (int i = 0; i < num_frames * num_frames; ++i) {
@@ -64,6 +70,13 @@ class TestSource : public core::Source {
 
   core::Truth truth() const override { return truth_; }
 
+  // As a table beside the recording has it.
+  std::vector<Impostor> impostors() const {
+    std::vector<Impostor> pairs;
+    for (const auto& pair : truth_.impostors) pairs.push_back({pair.query, pair.match, 0.5});
+    return pairs;
+  }
+
   static double stamp_s(int i) { return 2.0 + i / kRate_hz; }
 
   static cv::Mat random_picture(core::Random& random) {
@@ -85,6 +98,12 @@ class TestSource : public core::Source {
   }
 
  private:
+  static Eigen::Vector3d random_vector(core::Random& random) {
+    Eigen::Vector3d vector;
+    for (double& x : vector) x = random.gaussian();
+    return vector;
+  }
+
   static core::Rigid3 random_pose(core::Random& random, double size) {
     core::Vector6d tangent;
     for (double& x : tangent) x = random.uniform(-size, size);
@@ -108,7 +127,9 @@ class TestSource : public core::Source {
                                                    .k3 = i == 0 ? 0.0 : 1e-3});
       rig.body_from_camera.push_back(random_pose(random, 0.3));
     }
-    if (num_cameras > 0) rig.imu = core::Imu{random_pose(random, 0.1), 1.7e-4, 2.0e-3};
+    if (num_cameras > 0) {
+      rig.imu = core::Imu{random_pose(random, 0.1), 1.7e-4, 2.0e-3, 1.9e-5, 3.0e-3};
+    }
     return std::make_shared<const core::Rig>(rig);
   }
 

@@ -34,6 +34,8 @@ Walk walk_of(const Motion& motion, int num_frames) {
   return walk;
 }
 
+std::uint64_t imu_seed(const Spec& spec) { return core::seed_of(spec.seed, "twin.imu", 0); }
+
 std::vector<Person> people_in(const World& world, const Spec& spec) {
   std::vector<std::vector<Eigen::Vector3d>> paths_m;
   for (const auto& path : world.paths_of_people) paths_m.push_back(path.points_m);
@@ -50,7 +52,7 @@ Walkthrough::Walkthrough(const Spec& spec, const Config& config)
       rig_(rig_for(spec)),
       walk_(walk_of(motion_, config.num_frames)),
       people_(people_in(world_, spec)),
-      imu_(inertial_samples(motion_, InertialNoise{}, core::seed_of(spec.seed, "twin.imu", 0))) {
+      imu_(inertial_samples(motion_, InertialNoise{}, imu_seed(spec))) {
   rays_.reserve(world_.visits.size());
   for (const auto& building : world_.visits) {
     rays_.emplace_back(building.rectangles);
@@ -89,6 +91,16 @@ std::vector<WheelSample> Walkthrough::wheels() const {
   return wheels;
 }
 
-WalkTruth Walkthrough::truth() const { return truth_of(walk_, visits_, rig_->cameras.front()); }
+std::vector<core::InertialTruth> Walkthrough::inertial_truth() const {
+  std::vector<double> stamps_s;
+  for (const auto& pose : walk_.poses) stamps_s.push_back(pose.stamp_s);
+  return twin::inertial_truth(motion_, inertial_biases(motion_, InertialNoise{}, imu_seed(spec_)),
+                              stamps_s);
+}
+
+const WalkTruth& Walkthrough::truth() const {
+  if (!truth_) truth_ = truth_of(walk_, visits_, rig_->cameras.front());
+  return *truth_;
+}
 
 }  // namespace samewhere::twin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,8 +42,10 @@ class Walkthrough {
   core::Frame frame_without_pictures(int index) const;
   // Up to the last frame; empty if no robot walks.
   std::vector<WheelSample> wheels() const;
-  // Exact; takes some seconds.
-  WalkTruth truth() const;
+  // Of every frame.
+  std::vector<core::InertialTruth> inertial_truth() const;
+  // Exact. The first call takes some seconds, later ones none; from one thread.
+  const WalkTruth& truth() const;
 
  private:
   // Measured since the frame before, that frame's own moment excluded; of frame 0 the first sample.
@@ -58,6 +61,7 @@ class Walkthrough {
   std::vector<Visit> visits_;
   std::vector<Person> people_;
   std::vector<core::ImuSample> imu_;
+  mutable std::optional<WalkTruth> truth_;  // as soon as somebody has asked
 };
 
 }  // namespace samewhere::twin
