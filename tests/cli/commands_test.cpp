@@ -45,6 +45,7 @@ TEST_F(Commands, TheCommittedConfigFilesAreWhatTheProgramHas) {
 }
 
 TEST_F(Commands, RunEvalAndASecondRunAgree) {
+  ASSERT_EQ(unsetenv("SAMEWHERE_CACHE"), 0);  // both are to render
   const std::string source = "'twin:office-loop?seed=2' --set twin.num_frames=12";
   const Outcome first = run("run " + source + " --out " + quoted(path("a")));
   ASSERT_EQ(first.exit_code, 0) << first.err;

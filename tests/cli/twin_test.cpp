@@ -1,6 +1,8 @@
 // `samewhere twin` writes folders that others can read.
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -12,6 +14,9 @@ namespace {
 
 class Twin : public testing::Test {
  protected:
+  // pictures that are kept would be compared with themselves
+  Twin() { unsetenv("SAMEWHERE_CACHE"); }
+
   Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
   std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
 
@@ -85,6 +90,72 @@ TEST_F(Twin, TheSameWalkIsTheSameBytes) {
   EXPECT_GE(num_files, 2 * 5 + 4);
 }
 
+TEST_F(Twin, ATakenNameIsToldBeforeAnythingIsRendered) {
+  std::filesystem::create_directories(path("tum"));
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome outcome = run("twin 'twin:hotel?seed=2' --sheet " + quoted(path("sheet.jpg")) +
+                              " --out " + quoted(path("new") / "../tum"));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("is there already"), std::string::npos) << outcome.err;
+  EXPECT_LT(took.count(), 5.0) << "the truth of the hotel alone takes longer";
+  EXPECT_FALSE(std::filesystem::exists(path("sheet.jpg")));
+  EXPECT_FALSE(std::filesystem::exists(path("new")));
+}
+
+TEST_F(Twin, PicturesAreKeptForThisBuildAlone) {
+  ASSERT_EQ(setenv("SAMEWHERE_CACHE", path("cache").c_str(), 1), 0);
+  ASSERT_EQ(write("tum").exit_code, 0);
+  std::filesystem::path kept;
+  for (const auto& entry : std::filesystem::directory_iterator(path("cache"))) kept = entry.path();
+  const std::string key = core::read_file(kept / "key.txt");
+  EXPECT_EQ(key.rfind("twin:office-loop?seed=2", 0), 0U) << key;
+  const std::string hash = key.substr(key.rfind(' ') + 1);
+  EXPECT_EQ(hash.size(), 64U) << key;
+  EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos) << key;
+  // what is kept is what would be rendered
+  std::filesystem::rename(path("tum"), path("first"));
+  ASSERT_EQ(write("tum").exit_code, 0);
+  for (const char* list : {"rgb", "depth"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(path("first") / list)) {
+      EXPECT_EQ(core::read_file(entry.path()),
+                core::read_file(path("tum") / list / entry.path().filename()));
+    }
+  }
+  // a key that was cut is told, and costs no more than time
+  core::write_file(kept / "key.txt", key.substr(0, 9));
+  std::filesystem::remove_all(path("tum"));
+  const Outcome anew = write("tum");
+  EXPECT_EQ(anew.exit_code, 0);
+  EXPECT_NE(anew.err.find("key.txt"), std::string::npos) << anew.err;
+  EXPECT_NE(anew.err.find("anew"), std::string::npos) << anew.err;
+  EXPECT_EQ(core::read_file(kept / "key.txt"), key);
+}
+
+// cmake/WriteSourceHash.cmake, over a folder of two sources and a test.
+TEST_F(Twin, TheHashOfTheSourcesKnowsEachOfThemButNoTest) {
+  folder_.write("src/a.cpp", "int a;\n");
+  folder_.write("src/b.hpp", "int b;\n");
+  folder_.write("src/a_test.cpp", "int t;\n");
+  const auto hashed = [this](const std::string& build) {
+    const std::string command = "cmake '-DFOLDERS=" + path("src").string() + "' '-DBUILD=" + build +
+                                "' '-DOUT=" + path("hash.cpp").string() +
+                                "' -P '" SAMEWHERE_REPOSITORY "/cmake/WriteSourceHash.cmake'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return core::read_file(path("hash.cpp"));
+  };
+  const std::string first = hashed("gcc");
+  EXPECT_NE(hashed("clang"), first);
+  EXPECT_EQ(hashed("gcc"), first);
+  folder_.write("src/a_test.cpp", "int u;\n");
+  EXPECT_EQ(hashed("gcc"), first);
+  folder_.write("src/b.hpp", "int c;\n");
+  const std::string second = hashed("gcc");
+  EXPECT_NE(second, first);
+  folder_.write("src/c.hpp", "");
+  EXPECT_NE(hashed("gcc"), second);
+}
+
 TEST_F(Twin, WrongCallsAreNamed) {
   const auto expect_named = [](const Outcome& outcome, const std::string& words) {
     EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
@@ -95,6 +166,7 @@ TEST_F(Twin, WrongCallsAreNamed) {
   expect_named(run("twin twin:office-loop"), "expected --out DIR");
   expect_named(run("twin twin:office-loop --out x --format kitti"), "expected one of: tum, euroc");
   expect_named(run("twin twin:castle --out x"), "castle");
+  expect_named(run("twin twin:office-loop --out x --sheet y.png"), "ends in .jpg");
   std::filesystem::create_directories(path("tum"));
   expect_named(write("tum"), "is there already");
   expect_named(run("twin twin:office-loop --set twin.num_frames=2 --out /proc/walk"), "/proc/walk");

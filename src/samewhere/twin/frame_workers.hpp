@@ -19,21 +19,22 @@ namespace samewhere::twin {
 template <class Frame>
 class FrameWorkers {
  public:
-  // `make` is called by all workers at once.
+  // `make` is called by all workers at once. Throws InputError if the system refuses a thread.
   FrameWorkers(int num_frames, int num_workers, std::function<Frame(int)> make)
       : num_frames_(num_frames), make_(std::move(make)) {
     core::require(num_workers > 0, "frames are made by at least one worker");
     constexpr std::size_t kAhead = 1;  // ready, beside the one in the making
     for (int i = 0; i < num_workers; ++i) channels_.emplace_back(kAhead);
-    for (int i = 0; i < num_workers; ++i) {
-      workers_.emplace_back([this, i] { run(i); });
+    try {
+      for (int i = 0; i < num_workers; ++i) workers_.emplace_back([this, i] { run(i); });
+    } catch (...) {  // those that run are waited for, and must not wait for us
+      close_all();
+      throw;
     }
   }
   FrameWorkers(const FrameWorkers&) = delete;
   FrameWorkers& operator=(const FrameWorkers&) = delete;
-  ~FrameWorkers() {
-    for (auto& channel : channels_) channel.close();
-  }
+  ~FrameWorkers() { close_all(); }
 
   // The next frame, or nothing at the end. Throws what make() threw for it; no frames come after
   // that.
@@ -54,6 +55,10 @@ class FrameWorkers {
     std::optional<Frame> frame;
     std::exception_ptr error;
   };
+
+  void close_all() {
+    for (auto& channel : channels_) channel.close();
+  }
 
   Made made(int index) const {
     try {

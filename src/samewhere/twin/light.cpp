@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <numbers>
 
-#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/twin/light.hpp>
+#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/texture.hpp>
 
 namespace samewhere::twin {
@@ -23,19 +22,6 @@ const Colour kBuried = Colour::Constant(-1.0F);
 const Colour kShade = Colour::Constant(0.1F);
 
 bool is_buried(const Colour& colour) { return colour[0] < 0.0F; }
-
-// Calls work(i) for 0 <= i < count on several threads.
-template <class Work>
-void share_out(int count, const Work& work) {
-  const int num_threads = core::num_hardware_threads();
-  std::deque<core::WorkerThread> threads;
-  for (int first = 0; first < num_threads; ++first) {
-    threads.emplace_back([=, &work] {
-      for (int i = first; i < count; i += num_threads) work(i);
-    });
-  }
-  for (auto& thread : threads) thread.join();
-}
 
 std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
   constexpr float kPiece_m = 0.4F;
@@ -201,9 +187,10 @@ std::optional<Colour> known_value(SurfaceColours& colours, int r, const Eigen::A
 
 }  // namespace
 
-Light::Light(const std::vector<Rectangle>& rectangles, const RayScene& rays)
+Light::Light(const std::vector<Rectangle>& rectangles, const RayScene& rays, int num_threads)
     : rectangles_(rectangles),
       rays_(rays),
+      num_threads_(num_threads),
       emitters_(emitters_of(rectangles)),
       on_surfaces_(rectangles) {
   SurfaceColours direct(rectangles);
@@ -226,7 +213,7 @@ Light::Light(const std::vector<Rectangle>& rectangles, const RayScene& rays)
 
 template <class Compute>
 void Light::fill(SurfaceColours& colours, const Compute& compute) const {
-  share_out(static_cast<int>(rectangles_.size()), [&](int r) {
+  share_out(static_cast<int>(rectangles_.size()), num_threads_, [&](int r) {
     if (is_emitting(rectangles_[static_cast<std::size_t>(r)].material)) return;
     fill_rectangle(colours, r, compute(r));
     uncover(colours, r);

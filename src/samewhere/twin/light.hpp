@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/twin/ray_scene.hpp>
 #include <samewhere/twin/surface.hpp>
 #include <samewhere/twin/surface_colours.hpp>
@@ -24,12 +25,12 @@ struct Emitter {
 // How much light falls on every surface: from lamps and windows with soft shadows, and by way of
 // the other surfaces (one bounce gathered, the further ones estimated from it). As irradiance over
 // pi: times the reflectance it is the light that a matt surface sends back. Computed once, on a
-// grid that is finer where light changes, by as many threads as the machine has; the same whatever
-// their number.
+// grid that is finer where light changes; the same whatever the number of threads.
 class Light {
  public:
   // Rectangles and rays must outlive it.
-  Light(const std::vector<Rectangle>& rectangles, const RayScene& rays);
+  Light(const std::vector<Rectangle>& rectangles, const RayScene& rays,
+        int num_threads = core::num_hardware_threads());
 
   // `right_up_m`: of a point of the rectangle, from its corner.
   Colour at(int rectangle, const Eigen::Vector2f& right_up_m) const {
@@ -59,6 +60,7 @@ class Light {
 
   const std::vector<Rectangle>& rectangles_;
   const RayScene& rays_;
+  int num_threads_;
   std::vector<Emitter> emitters_;  // by x
   SurfaceColours on_surfaces_;
 };

@@ -21,7 +21,8 @@ namespace {
 using std::filesystem::path;
 using FileTime = std::filesystem::file_time_type;
 
-constexpr const char* kKeyFile = "key.txt";  // its time is when the key was last used
+constexpr const char* kKeyFile = "key.txt";     // its time is when the key was last used
+constexpr const char* kPictures = ".pictures";  // how the name of a frame's file ends
 constexpr std::size_t kNameDigits = 16;
 constexpr int kFramesBetweenChecks = 32;
 constexpr std::string_view kMagic = "samewhere pictures 1\n";
@@ -29,7 +30,7 @@ constexpr std::string_view kDepth = "depth";
 constexpr std::string_view kImage = "image";
 
 // FNV-1a (Fowler, Noll, Vo), 64 bits. Two keys that share a folder name are told apart by the key
-// file.
+// file, and the later takes the place of the earlier.
 std::string name_of_key(std::string_view key_text) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : key_text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
@@ -137,6 +138,19 @@ int replace_file(const path& file, std::string_view content) {
   return error;
 }
 
+// Returns how many there were.
+int drop_pictures(const path& folder) {
+  int num_dropped = 0;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() != kPictures) continue;
+    std::error_code gone;
+    if (std::filesystem::remove(entry->path(), gone)) ++num_dropped;
+  }
+  return num_dropped;
+}
+
 // ---- room
 
 struct KeyFolder {
@@ -216,28 +230,31 @@ PictureCache::PictureCache(const std::string& key_text, const std::optional<Cach
 
 void PictureCache::open() {
   folder_ = place_->root / name_of_key(key_text_);
-  make_folder();
+  notice_ = make_folder();
   note_use();
   make_room();
 }
 
-void PictureCache::make_folder() const {
+std::optional<std::string> PictureCache::make_folder() const {
   std::error_code failed;
   std::filesystem::create_directories(folder_, failed);
   if (failed) throw core::InputError(folder_.string() + ": cannot be made: " + failed.message());
   const path key_file = folder_ / kKeyFile;
   const std::optional<std::string> found = read_if_there(key_file);
-  if (found && *found != key_text_) {
-    throw core::InputError(key_file.string() + ": belongs to other pictures");
+  if (found && *found == key_text_) return std::nullopt;
+  // nobody can tell what the pictures in it show
+  const int num_dropped = drop_pictures(folder_);
+  if (const int error = replace_file(key_file, key_text_); error != 0) {
+    throw core::InputError(
+        fmt::format("{}: cannot be written: {}", key_file.string(), std::strerror(error)));
   }
-  const int error = found ? 0 : replace_file(key_file, key_text_);
-  if (error == 0) return;
-  throw core::InputError(
-      fmt::format("{}: cannot be written: {}", key_file.string(), std::strerror(error)));
+  if (!found && num_dropped == 0) return std::nullopt;
+  return fmt::format("{}: {}; its pictures ({}) are rendered anew", key_file.string(),
+                     found ? "is cut short or of other pictures" : "is missing", num_dropped);
 }
 
 path PictureCache::file_of(int index) const {
-  return folder_ / fmt::format("{:06}.pictures", index);
+  return folder_ / fmt::format("{:06}{}", index, kPictures);
 }
 
 void PictureCache::note_use() const {

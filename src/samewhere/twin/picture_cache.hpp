@@ -30,7 +30,8 @@ std::optional<CachePlace> cache_place_from_environment();
 // depend on: building, settings, version of the renderer. Below the root lies one folder per key,
 // in it one file per frame, so that a frame is there with all its pictures or not at all. Files
 // appear by renaming: processes that end suddenly or work on the same key at once do no harm. A
-// damaged file counts as absent. If the root holds more than the limit, the keys that were used
+// damaged file counts as absent; so does a folder whose key file is missing or says something else,
+// and its files go. If the root holds more than the limit, the keys that were used
 // longest ago go, but never this one; the limit is looked at every few frames and may be passed by
 // as many. Nothing here stops a run: where files cannot be written, the caller is told and goes on
 // without. load and store may be called from several threads.
@@ -42,13 +43,16 @@ class PictureCache {
   // Why nothing is kept although a place was named; nothing if all is well. One line to be logged.
   const std::optional<std::string>& refusal() const { return refusal_; }
 
+  // What was found wrong and set right on opening; nothing if all is well. One line to be logged.
+  const std::optional<std::string>& notice() const { return notice_; }
+
   std::optional<Pictures> load(int index) const;
   // Returns the reason if they could not be kept: one line, for the caller to log once.
   std::optional<std::string> store(int index, const Pictures& pictures) const;
 
  private:
   void open();
-  void make_folder() const;
+  std::optional<std::string> make_folder() const;  // the notice
   std::filesystem::path file_of(int index) const;
   void note_use() const;
   void make_room() const;
@@ -57,6 +61,7 @@ class PictureCache {
   std::string key_text_;
   std::filesystem::path folder_;  // of the key
   std::optional<std::string> refusal_;
+  std::optional<std::string> notice_;
 };
 
 }  // namespace samewhere::twin

@@ -14,6 +14,7 @@
 namespace samewhere::twin {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Optional;
 
@@ -194,12 +195,29 @@ TEST_F(PictureCacheTest, AClearedFolderBeginsAgain) {
   expect_same(cache.load(2), pictures(3));
 }
 
-TEST_F(PictureCacheTest, AKeyThatSharesTheFolderNameOfAnotherIsRefused) {
+TEST_F(PictureCacheTest, AKeyFileThatIsCutForeignOrGoneCostsItsPicturesAndIsTold) {
+  for (const char* content : {"", "hot", "a text of the same hash", "gone"}) {
+    ASSERT_EQ(open("hotel").store(0, pictures(1)), std::nullopt);
+    ASSERT_EQ(open("hotel").notice(), std::nullopt);
+    const std::filesystem::path key_file = files().front().parent_path() / "key.txt";
+    core::write_file(key_file, content);
+    if (content == std::string("gone")) std::filesystem::remove(key_file);
+    const PictureCache cache = open("hotel");
+    EXPECT_EQ(cache.refusal(), std::nullopt);
+    EXPECT_THAT(cache.notice(), Optional(AllOf(HasSubstr("key.txt"), HasSubstr("anew"))));
+    EXPECT_FALSE(cache.load(0)) << content;
+    ASSERT_EQ(cache.store(0, pictures(2)), std::nullopt);
+    expect_same(open("hotel").load(0), pictures(2));
+    EXPECT_EQ(open("hotel").notice(), std::nullopt);
+  }
+}
+
+TEST_F(PictureCacheTest, AKeyFileThatCannotBeSetRightSwitchesItOff) {
   ASSERT_EQ(open("hotel").store(0, pictures(1)), std::nullopt);
-  core::write_file(files().front().parent_path() / "key.txt", "a text of the same hash");
-  const PictureCache cache = open("hotel");
-  EXPECT_THAT(cache.refusal(), Optional(HasSubstr("other pictures")));
-  EXPECT_FALSE(cache.load(0));
+  const std::filesystem::path key_file = files().front().parent_path() / "key.txt";
+  std::filesystem::remove(key_file);
+  std::filesystem::create_directories(key_file / "within");
+  EXPECT_THAT(open("hotel").refusal(), Optional(HasSubstr("key.txt")));
 }
 
 }  // namespace

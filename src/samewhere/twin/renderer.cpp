@@ -41,10 +41,11 @@ struct Renderer::Run {
   int surface() const { return hits.front().rectangle; }
 };
 
-Renderer::Renderer(const Building& building, const RayScene& rays, const core::Camera& camera)
+Renderer::Renderer(const Building& building, const RayScene& rays, const core::Camera& camera,
+                   int num_threads)
     : building_(building),
       rays_(rays),
-      light_(building.rectangles, rays),
+      light_(building.rectangles, rays, num_threads),
       width_px_(geometry::pinhole(camera).width_px),
       height_px_(geometry::pinhole(camera).height_px),
       pixel_rad_(static_cast<float>(1.0 / geometry::focal_px(camera))) {

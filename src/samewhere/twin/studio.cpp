@@ -25,7 +25,8 @@ Studio::Studio(const Walkthrough& walk, const Config& config)
     : walk_(walk), has_ideal_depth_(config.ideal_depth) {
   for (const auto& visit : walk.visits()) {
     // both cameras of a stereo pair are alike
-    renderers_.emplace_back(*visit.building, *visit.rays, walk.rig()->cameras.front());
+    renderers_.emplace_back(*visit.building, *visit.rays, walk.rig()->cameras.front(),
+                            num_threads(config));
   }
   exposures_ = automatic_exposures(mean_radiances(), kFrameRate_hz);
 }

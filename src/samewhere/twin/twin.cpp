@@ -3,30 +3,31 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/twin/frame_workers.hpp>
 #include <samewhere/twin/picture_cache.hpp>
+#include <samewhere/twin/source_hash.hpp>
 #include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/twin.hpp>
 
 namespace samewhere::twin {
 namespace {
 
-// To be raised with every change of what the pictures show: kept ones of another version are not
-// taken.
-constexpr int kPicturesVersion = 5;
-
 PictureCache cache_for(const Walkthrough& walk, const Config& config) {
+  // whatever is built from other sources may render otherwise
   const std::string key =
-      fmt::format("{} pictures {}", canonical_text(walk.spec()), kPicturesVersion);
+      fmt::format("{} pictures of build {}", canonical_text(walk.spec()), source_hash());
   // ideal depth is not in the units that the cache keeps
   return config.ideal_depth ? PictureCache(key, std::nullopt) : PictureCache(key);
 }
 
+// Frames come from the cache as long as it has them. The studio, whose light takes seconds, is
+// opened with the first that is missing.
 class TwinSource : public core::Source {
  public:
   TwinSource(std::shared_ptr<const Walkthrough> walk, const Config& config)
-      : walk_(std::move(walk)), config_(config), cache_(cache_for(*walk_, config)) {}
+      : walk_(std::move(walk)), config_(config), cache_(cache_for(*walk_, config)) {
+    if (cache_.notice()) spdlog::warn("{}", *cache_.notice());
+  }
 
   core::SourceInfo info() const override {
     return {.name = walk_->name(),
@@ -38,8 +39,15 @@ class TwinSource : public core::Source {
   }
 
   std::optional<core::Frame> next() override {
-    if (!workers_) start();
+    if (!workers_) start(0);
     std::optional<Made> made = workers_->next();
+    if (made && made->frame.images.empty()) {
+      const int missing = static_cast<int>(made->frame.id.value());
+      workers_.reset();
+      studio_.emplace(*walk_, config_);
+      start(missing);
+      made = workers_->next();
+    }
     if (!made) return std::nullopt;
     if (made->refusal && !is_refusal_told_) {
       spdlog::warn("{}", *made->refusal);
@@ -48,24 +56,27 @@ class TwinSource : public core::Source {
     return std::move(made->frame);
   }
 
-  core::Truth truth() const override { return core_truth(walk_->walk().poses, walk_->truth()); }
+  core::Truth truth() const override {
+    core::Truth truth = core_truth(walk_->walk().poses, walk_->truth());
+    truth.inertial = walk_->inertial_truth();
+    return truth;
+  }
 
  private:
   struct Made {
-    core::Frame frame;
+    core::Frame frame;                   // without images: missing, and there is no studio yet
     std::optional<std::string> refusal;  // of the cache to keep the pictures
   };
 
-  void start() {
-    studio_.emplace(*walk_, config_);
-    const int num_workers =
-        config_.num_workers > 0 ? config_.num_workers : core::num_hardware_threads();
-    workers_.emplace(walk_->num_frames(), num_workers, [this](int index) { return make(index); });
+  void start(int first) {
+    workers_.emplace(walk_->num_frames() - first, num_threads(config_),
+                     [this, first](int index) { return make(first + index); });
   }
 
   Made make(int index) const {
     Made made{.frame = walk_->frame_without_pictures(index), .refusal = cache_.refusal()};
     std::optional<Pictures> pictures = cache_.load(index);
+    if (!pictures && !studio_) return made;
     if (!pictures) {
       pictures = studio_->pictures(index);
       if (!made.refusal) made.refusal = cache_.store(index, *pictures);
@@ -78,7 +89,7 @@ class TwinSource : public core::Source {
   std::shared_ptr<const Walkthrough> walk_;
   Config config_;
   PictureCache cache_;
-  std::optional<Studio> studio_;
+  std::optional<Studio> studio_;  // while no worker runs it may be opened
   bool is_refusal_told_ = false;
   std::optional<FrameWorkers<Made>> workers_;  // last: they end before what they use
 };

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -67,6 +68,7 @@ Agreement compare(const core::Frame& from, const core::Frame& to,
 }
 
 TEST(Twin, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreadsAndAnotherSeedDoesNot) {
+  ASSERT_EQ(unsetenv("SAMEWHERE_CACHE"), 0);  // all are to be rendered
   const auto first = render("twin:office-loop?seed=3", {.num_frames = 2, .num_workers = 1});
   const auto again = render("twin:office-loop?seed=3", {.num_frames = 2, .num_workers = 3});
   const auto other = render("twin:office-loop?seed=4", {.num_frames = 2});
@@ -101,6 +103,21 @@ TEST(Twin, FramesAreNumberedStampedAndCalibrated) {
     EXPECT_TRUE(frame->rig->is_calibrated());
   }
   EXPECT_FALSE(source->next());
+}
+
+TEST(Twin, TruthIsMadeOnceAndTellsWhatTheInertialUnitDoes) {
+  const Config config{.num_frames = 3};
+  const auto walk =
+      std::make_shared<const Walkthrough>(parse_spec("twin:office-loop?seed=3"), config);
+  const core::Truth truth = open_twin(walk, config)->truth();
+  EXPECT_EQ(&walk->truth(), &walk->truth());
+  ASSERT_EQ(truth.inertial.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(truth.inertial[i].stamp_s, truth.trajectory[i].stamp_s);
+    EXPECT_EQ(truth.inertial[i].velocity_m_s,
+              walk->motion().velocity_m_s(truth.trajectory[i].stamp_s));
+    EXPECT_GT(truth.inertial[i].accelerometer_bias_m_s2.norm(), 0.0);
+  }
 }
 
 TEST(Twin, ABadSpecIsRefused) { EXPECT_THROW(open_twin("twin:castle", {}), core::InputError); }

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+namespace samewhere::twin {
+
+// SHA-256, in hexadecimal digits, of every source that has a say in what pictures show (twin/,
+// geometry/, core/, less their tests), of the compiler with its flags and of Embree's version.
+// Computed at build time (cmake/WriteSourceHash.cmake).
+std::string_view source_hash();
+
+}  // namespace samewhere::twin

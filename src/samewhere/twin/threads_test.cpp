@@ -1,0 +1,130 @@
+// How many threads the twin building starts, and what happens if the system refuses one.
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/twin/frame_workers.hpp>
+#include <samewhere/twin/share_out.hpp>
+#include <samewhere/twin/twin.hpp>
+
+namespace {
+
+int num_started = 0;
+int most_threads = 1000;
+
+}  // namespace
+
+// Every request for a thread in this program goes by here.
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
+                              void* (*work)(void*), void* argument) {
+  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+  static const auto create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
+  if (num_started == most_threads) return EAGAIN;
+  ++num_started;
+  return create(thread, attributes, work, argument);
+}
+
+namespace samewhere::twin {
+namespace {
+
+TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
+  for (const int num_allowed : {0, 1, 3}) {
+    num_started = 0;
+    most_threads = num_allowed;
+    try {
+      const FrameWorkers<int> workers(1000, 4, [](int index) { return index; });
+      ADD_FAILURE() << "four workers with " << num_allowed << " threads";
+    } catch (const core::InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("a thread cannot be started: "));
+    }
+    EXPECT_EQ(num_started, num_allowed);
+    EXPECT_THROW(share_out(9, num_allowed + 2, [](int) {}), core::InputError);
+  }
+}
+
+TEST(Threads, WorkIsSharedOutAmongAsManyAsAskedFor) {
+  for (const int num_threads : {1, 2, 5}) {
+    num_started = 0;
+    std::vector<int> times(23, 0);
+    share_out(23, num_threads, [&](int i) { ++times[static_cast<std::size_t>(i)]; });
+    EXPECT_THAT(times, testing::Each(1));
+    EXPECT_EQ(num_started, num_threads - 1) << "beside the caller's";
+  }
+}
+
+TEST(Threads, AnErrorInAnyShareComesOut) {
+  for (const int bad : {0, 1, 6}) {
+    const auto work = [bad](int i) {
+      if (i == bad) throw std::runtime_error("no light");
+    };
+    EXPECT_THROW(share_out(7, 3, work), std::runtime_error) << bad;
+  }
+}
+
+TEST(Threads, OneWorkerMeansOneThreadForTheLightToo) {
+  ASSERT_EQ(unsetenv("SAMEWHERE_CACHE"), 0);
+  const auto source = open_twin("twin:office-loop?seed=3", {.num_frames = 1, .num_workers = 1});
+  num_started = 0;
+  ASSERT_TRUE(source->next());
+  EXPECT_EQ(num_started, 2) << "one that looked into the cache, then one that rendered";
+}
+
+// All pictures of a walk, and how many threads that took.
+struct Watched {
+  std::vector<cv::Mat> pictures;
+  int num_threads = 0;
+};
+
+Watched watched(const std::shared_ptr<const Walkthrough>& walk, const Config& config) {
+  Watched watched;
+  const auto source = open_twin(walk, config);
+  num_started = 0;
+  while (const auto frame = source->next()) {
+    EXPECT_EQ(frame->id, core::FrameId(watched.pictures.size()));
+    watched.pictures.push_back(frame->images.at(0));
+  }
+  watched.num_threads = num_started;
+  return watched;
+}
+
+bool is_same(const std::vector<cv::Mat>& a, const std::vector<cv::Mat>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const cv::Mat& x, const cv::Mat& y) {
+    return cv::norm(x, y, cv::NORM_INF) == 0.0;
+  });
+}
+
+TEST(Threads, WhatIsKeptNeedsNoLightAndAPictureThatIsMissingIsRendered) {
+  const auto cache =
+      std::filesystem::path(testing::TempDir()) / ("samewhere_threads_" + std::to_string(getpid()));
+  ASSERT_EQ(setenv("SAMEWHERE_CACHE", cache.c_str(), 1), 0);
+  const Config config{.num_frames = 5, .num_workers = 2};
+  const auto walk =
+      std::make_shared<const Walkthrough>(parse_spec("twin:office-loop?seed=3"), config);
+  const Watched rendered = watched(walk, config);
+  ASSERT_EQ(rendered.pictures.size(), 5U);
+  EXPECT_GT(rendered.num_threads, 4);
+  const Watched kept = watched(walk, config);
+  EXPECT_TRUE(is_same(kept.pictures, rendered.pictures));
+  EXPECT_EQ(kept.num_threads, 2) << "nothing but readers of the cache";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(cache)) {
+    if (entry.path().filename() == "000003.pictures") std::filesystem::remove(entry.path());
+  }
+  const Watched mended = watched(walk, config);
+  EXPECT_TRUE(is_same(mended.pictures, rendered.pictures));
+  EXPECT_GT(mended.num_threads, 4);
+  EXPECT_EQ(watched(walk, config).num_threads, 2) << "it is kept again";
+  std::filesystem::remove_all(cache);
+}
+
+}  // namespace
+}  // namespace samewhere::twin
