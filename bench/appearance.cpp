@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -250,40 +251,36 @@ void measure_all(Options options) {
   publish(comparison(sources), options.csv_file);
 }
 
-int run(int argc, char** argv) {
-  Options options;
-  CLI::App app(
+std::function<void()> set_up(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.name("appearance");
+  app.description(
       "How the pictures of sources look to a feature matcher: corners, tones, noise, spectrum, "
       "and\n"
       "the inliers of 1000 ORB features (ratio 0.8) under one fundamental matrix, by baseline "
       "over\n"
       "median depth and by angle between the views. '!' marks what is further than a factor of "
       "two\n"
-      "from every recorded source.",
-      "appearance");
-  app.add_option("SOURCE", options.sources, "recordings with depth and poses, or twin:PRESET")
+      "from every recorded source.");
+  app.add_option("SOURCE", options->sources, "recordings with depth and poses, or twin:PRESET")
       ->required();
-  app.add_option("--width", options.width_px,
+  app.add_option("--width", options->width_px,
                  "width in pixels that all pictures are brought to; 0: that of the smallest")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  app.add_option("--pictures", options.num_pictures, "so many frames for the statistics")
+  app.add_option("--pictures", options->num_pictures, "so many frames for the statistics")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--pairs", options.num_pairs, "so many pairs of views of each class")
+  app.add_option("--pairs", options->num_pairs, "so many pairs of views of each class")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--csv", options.csv_file, "write the table to this file, too");
-  return run_program(app, argc, argv, [&options] { measure_all(options); });
+  app.add_option("--csv", options->csv_file, "write the table to this file, too");
+  return [options] { measure_all(*options); };
 }
 
 }  // namespace
 }  // namespace samewhere::bench
 
 int main(int argc, char** argv) {
-  try {
-    return samewhere::bench::run(argc, argv);
-  } catch (...) {
-    return samewhere::bench::kBrokenPromise;  // not even the options could be set up
-  }
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
 }

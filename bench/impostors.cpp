@@ -174,37 +174,33 @@ void measure_all(const Options& options) {
   publish(table, options.csv_file);
 }
 
-int run(int argc, char** argv) {
-  Options options;
-  options.network = default_network();
-  CLI::App app(
+std::function<void()> set_up(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  options->network = default_network();
+  app.name("impostors");
+  app.description(
       "Share of queries whose best impostor has at least so many inliers: of the 50 frames that\n"
       "look most like the query, its own place taken out, the most ORB matches (1500 features,\n"
-      "ratio 0.8) under one fundamental matrix.",
-      "impostors");
-  app.add_option("SOURCE", options.sources,
+      "ratio 0.8) under one fundamental matrix.");
+  app.add_option("SOURCE", options->sources,
                  "recordings with place truth, the folder of IE Tower, or twin:PRESET?similarity=S")
       ->required();
-  app.add_option("--network", options.network, "MobileNetV2 as ONNX with an output `embedding`")
+  app.add_option("--network", options->network, "MobileNetV2 as ONNX with an output `embedding`")
       ->capture_default_str();
-  app.add_option("--step", options.query_step, "every so many frames is a query")
+  app.add_option("--step", options->query_step, "every so many frames is a query")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--tower-queries", options.num_tower_queries,
+  app.add_option("--tower-queries", options->num_tower_queries,
                  "so many of IE Tower's queries, by a fixed permutation")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--csv", options.csv_file, "write the table to this file, too");
-  return run_program(app, argc, argv, [&options] { measure_all(options); });
+  app.add_option("--csv", options->csv_file, "write the table to this file, too");
+  return [options] { measure_all(*options); };
 }
 
 }  // namespace
 }  // namespace samewhere::bench
 
 int main(int argc, char** argv) {
-  try {
-    return samewhere::bench::run(argc, argv);
-  } catch (...) {
-    return samewhere::bench::kBrokenPromise;  // not even the options could be set up
-  }
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
 }

@@ -12,17 +12,16 @@ namespace samewhere::bench {
 namespace {
 
 constexpr int kBadInput = 2;
+constexpr int kBrokenPromise = 3;
 
 int complain(const CLI::App& app, const std::string& message, int exit_code) {
   std::fputs((app.get_name() + ": " + message + "\n").c_str(), stderr);
   return exit_code;
 }
 
-}  // namespace
-
-int run_program(CLI::App& app, int argc, char** argv, const std::function<void()>& work) {
-  cv::setNumThreads(1);
+int parse_and_work(CLI::App& app, int argc, char** argv, SetUp set_up) {
   try {
+    const std::function<void()> work = set_up(app);
     app.parse(argc, argv);
     work();
   } catch (const CLI::ParseError& error) {
@@ -35,6 +34,18 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<void()
     return complain(app, std::string("this is a bug of ours: ") + error.what(), kBrokenPromise);
   }
   return 0;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, SetUp set_up) noexcept {
+  try {
+    cv::setNumThreads(1);
+    CLI::App app;
+    return parse_and_work(app, argc, argv, set_up);
+  } catch (...) {
+    return kBrokenPromise;  // not even a message could be made
+  }
 }
 
 void publish(const Table& table, const std::string& csv_file) {

@@ -9,11 +9,13 @@
 
 namespace samewhere::bench {
 
-inline constexpr int kBrokenPromise = 3;  // exit code: a bug of ours
+// Names the program, says what it is for, adds its options; returns the work that is done once they
+// are read.
+using SetUp = std::function<void()> (*)(CLI::App& app);
 
-// Parses the arguments, then does the work. Bad input is one line on stderr and exit code 2, a bug
-// of ours 3. OpenCV runs on one thread meanwhile, so that the same figures come out everywhere.
-int run_program(CLI::App& app, int argc, char** argv, const std::function<void()>& work);
+// All that main() does: returns the exit code. Bad input is one line on stderr and 2, a bug of ours
+// 3. OpenCV runs on one thread, so that the same figures come out everywhere.
+int run_program(int argc, char** argv, SetUp set_up) noexcept;
 
 // The table on stdout, and as CSV in `csv_file` unless that is empty. Throws InputError.
 void publish(const Table& table, const std::string& csv_file);

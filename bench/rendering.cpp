@@ -1,5 +1,6 @@
 // rendering SPEC...: how fast do pictures of a twin building come, and what is on them?
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,38 +59,34 @@ std::vector<std::string> measure(const std::string& spec, const Options& options
           fmt::format("{:.0f}", num_corners / (num_frames / 10))};
 }
 
-int run(int argc, char** argv) {
-  Options options;
-  CLI::App app(
+std::function<void()> set_up(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.name("rendering");
+  app.description(
       "How fast pictures of a twin building come (640 x 480, with depth or a second camera, as "
       "the\n"
       "spec says), and how many FAST corners (threshold 20) they show. SAMEWHERE_CACHE is to be "
-      "unset.",
-      "rendering");
-  app.add_option("SPEC", options.specs, "twin:PRESET?seed=1000")->required();
-  app.add_option("--frames", options.num_frames, "so many from the start of the walk")
+      "unset.");
+  app.add_option("SPEC", options->specs, "twin:PRESET?seed=1000")->required();
+  app.add_option("--frames", options->num_frames, "so many from the start of the walk")
       ->check(CLI::Range(20, 100000))
       ->capture_default_str();
-  app.add_option("--workers", options.num_workers, "threads that render")
+  app.add_option("--workers", options->num_workers, "threads that render")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  app.add_option("--csv", options.csv_file, "write the table to this file, too");
-  return run_program(app, argc, argv, [&options] {
+  app.add_option("--csv", options->csv_file, "write the table to this file, too");
+  return [options] {
     Table table{{"walk", "threads", "s to the first frame", "frames per second", "ms of one thread",
                  "peak MiB so far", "corners"},
                 {}};
-    for (const auto& spec : options.specs) table.rows.push_back(measure(spec, options));
-    publish(table, options.csv_file);
-  });
+    for (const auto& spec : options->specs) table.rows.push_back(measure(spec, *options));
+    publish(table, options->csv_file);
+  };
 }
 
 }  // namespace
 }  // namespace samewhere::bench
 
 int main(int argc, char** argv) {
-  try {
-    return samewhere::bench::run(argc, argv);
-  } catch (...) {
-    return samewhere::bench::kBrokenPromise;  // not even the options could be set up
-  }
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
 }
