@@ -16,7 +16,7 @@ class CountingSource : public core::Source {
       : num_frames_(num_frames), ends_in_error_(ends_in_error) {}
 
   core::SourceInfo info() const override { return {.name = "count", .num_frames = num_frames_}; }
-  core::Truth truth() const override { return {{{1.0, {}}}, std::nullopt}; }
+  core::Truth truth() const override { return {.trajectory = {{1.0, {}}}}; }
   std::optional<core::Frame> next() override {
     if (num_given_ == num_frames_) {
       if (ends_in_error_) throw core::InputError("frame 3 is broken");

@@ -19,8 +19,9 @@
 
 namespace {
 
+constexpr int kPlenty = 1000;
 int num_started = 0;
-int most_threads = 1000;
+int most_threads = kPlenty;
 
 }  // namespace
 
@@ -34,8 +35,14 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
   return create(thread, attributes, work, argument);
 }
 
-namespace samewhere::twin {
+namespace samewhere::test {
 namespace {
+
+using twin::Config;
+using twin::FrameWorkers;
+using twin::open_twin;
+using twin::share_out;
+using twin::Walkthrough;
 
 TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
   for (const int num_allowed : {0, 1, 3}) {
@@ -50,6 +57,7 @@ TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
     EXPECT_EQ(num_started, num_allowed);
     EXPECT_THROW(share_out(9, num_allowed + 2, [](int) {}), core::InputError);
   }
+  most_threads = kPlenty;
 }
 
 TEST(Threads, WorkIsSharedOutAmongAsManyAsAskedFor) {
@@ -109,7 +117,7 @@ TEST(Threads, WhatIsKeptNeedsNoLightAndAPictureThatIsMissingIsRendered) {
   ASSERT_EQ(setenv("SAMEWHERE_CACHE", cache.c_str(), 1), 0);
   const Config config{.num_frames = 5, .num_workers = 2};
   const auto walk =
-      std::make_shared<const Walkthrough>(parse_spec("twin:office-loop?seed=3"), config);
+      std::make_shared<const Walkthrough>(twin::parse_spec("twin:office-loop?seed=3"), config);
   const Watched rendered = watched(walk, config);
   ASSERT_EQ(rendered.pictures.size(), 5U);
   EXPECT_GT(rendered.num_threads, 4);
@@ -127,4 +135,4 @@ TEST(Threads, WhatIsKeptNeedsNoLightAndAPictureThatIsMissingIsRendered) {
 }
 
 }  // namespace
-}  // namespace samewhere::twin
+}  // namespace samewhere::test
