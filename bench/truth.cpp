@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "depth_residuals.hpp"
+#include "carried_pixels.hpp"
 #include "program.hpp"
 #include <samewhere/core/random.hpp>
 #include <samewhere/geometry/camera.hpp>
@@ -67,32 +67,26 @@ struct Shot {
 };
 
 // How far from where depth and pose carry them pixels are found again in the other picture.
-std::vector<double> picture_shifts(const core::Camera& camera, const Shot& from, const Shot& to) {
+std::vector<double> picture_shifts_px(const core::Camera& camera, const Shot& from,
+                                      const Shot& to) {
   constexpr int kStep_px = 24;
   constexpr double kHidden = 0.05;
-  const core::Rigid3 to_from_from =
-      inverse(to.view.world_from_camera) * from.view.world_from_camera;
   std::vector<double> shifts_px;
-  for (int y = kStep_px; y + kStep_px < from.grey.rows; y += kStep_px) {
-    for (int x = kStep_px; x + kStep_px < from.grey.cols; x += kStep_px) {
-      const double depth_m = from.view.depth_m.at<float>(y, x);
-      if (depth_m <= 0.0) continue;
-      const Vector3d bearing = geometry::bearing(camera, {x, y});
-      const Vector3d in_to = to_from_from * Vector3d(bearing / bearing.z() * depth_m);
-      const auto pixel = geometry::project(camera, in_to);
-      if (!pixel) continue;
-      const auto seen_m = depth_between(to.view.depth_m, *pixel);
-      if (!seen_m || std::abs(*seen_m - in_to.z()) > kHidden * in_to.z()) continue;
-      if (const auto shift = picture_shift(from.grey, Vector2d(x, y), to.grey, *pixel)) {
-        shifts_px.push_back(*shift);
-      }
-    }
+  for (const auto& pixel : carried_pixels(camera, from.view, to.view, kStep_px)) {
+    if (pixel.depth_residual() > kHidden) continue;
+    const auto shift_px = picture_shift(from.grey, pixel.from_px, to.grey, pixel.to_px);
+    if (shift_px) shifts_px.push_back(*shift_px);
   }
   return shifts_px;
 }
 
-void append(const std::vector<double>& more, std::vector<double>& values) {
-  values.insert(values.end(), more.begin(), more.end());
+std::vector<double> depth_residuals(const core::Camera& camera, const Shot& from, const Shot& to) {
+  constexpr int kStep_px = 12;
+  std::vector<double> residuals;
+  for (const auto& pixel : carried_pixels(camera, from.view, to.view, kStep_px)) {
+    residuals.push_back(pixel.depth_residual());
+  }
+  return residuals;
 }
 
 // Whether both frames are there and show the same state of the building.
@@ -128,8 +122,8 @@ Reprojection reprojection(const twin::Walkthrough& walk) {
     const int later = first + kApart_frames;
     if (!is_one_visit(walk, first, first + 1) || !is_one_visit(walk, first, later)) continue;
     const Shot from = shot(first);
-    append(picture_shifts(camera, from, shot(first + 1)), found.picture_shifts_px);
-    append(depth_residuals(camera, from.view, shot(later).view), found.depth_residuals);
+    append(picture_shifts_px(camera, from, shot(first + 1)), found.picture_shifts_px);
+    append(depth_residuals(camera, from, shot(later)), found.depth_residuals);
   }
   return found;
 }

@@ -1,4 +1,4 @@
-#include "depth_residuals.hpp"
+#include "carried_pixels.hpp"
 
 #include <algorithm>
 
@@ -48,7 +48,10 @@ struct Told {
 };
 
 Told told(const DepthView& from, const DepthView& to) {
-  std::vector<double> residuals = depth_residuals(kCamera, from, to);
+  std::vector<double> residuals;
+  for (const auto& pixel : carried_pixels(kCamera, from, to, 12)) {
+    residuals.push_back(pixel.depth_residual());
+  }
   EXPECT_GT(residuals.size(), 500U);
   std::sort(residuals.begin(), residuals.end());
   const auto num_small = std::lower_bound(residuals.begin(), residuals.end(), 0.01);
@@ -57,7 +60,7 @@ Told told(const DepthView& from, const DepthView& to) {
       residuals[residuals.size() / 2]};
 }
 
-TEST(DepthResiduals, AreNothingWhereAllIsRightAndTellMistakesSmallAndLarge) {
+TEST(CarriedPixels, AreAsDeepAsForetoldAndTellMistakesSmallAndLarge) {
   const core::Rigid3 first = pose({0.1, 0.0, 0.0}, 0.05);
   const core::Rigid3 second = pose({-0.1, 0.05, 0.9}, -0.1);
   const DepthView from = seen_from(first);

@@ -1,7 +1,6 @@
-#include "depth_residuals.hpp"
+#include "carried_pixels.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include <samewhere/geometry/camera.hpp>
@@ -24,24 +23,25 @@ std::optional<double> depth_between(const cv::Mat& depth_m, const Eigen::Vector2
                 b * ((1 - a) * corners[2] + a * corners[3]));
 }
 
-std::vector<double> depth_residuals(const core::Camera& camera, const DepthView& from,
-                                    const DepthView& to) {
-  constexpr int kStep_px = 12;
+std::vector<CarriedPixel> carried_pixels(const core::Camera& camera, const DepthView& from,
+                                         const DepthView& to, int step_px) {
   const core::Rigid3 to_from_from = inverse(to.world_from_camera) * from.world_from_camera;
-  std::vector<double> residuals;
-  for (int y = kStep_px; y + kStep_px < from.depth_m.rows; y += kStep_px) {
-    for (int x = kStep_px; x + kStep_px < from.depth_m.cols; x += kStep_px) {
+  std::vector<CarriedPixel> carried;
+  for (int y = step_px; y + step_px < from.depth_m.rows; y += step_px) {
+    for (int x = step_px; x + step_px < from.depth_m.cols; x += step_px) {
       const double depth_m = from.depth_m.at<float>(y, x);
       if (depth_m <= 0.0) continue;
-      const Eigen::Vector3d bearing = geometry::bearing(camera, {x, y});
-      const Eigen::Vector3d in_to = to_from_from * Eigen::Vector3d(bearing / bearing.z() * depth_m);
-      const auto pixel = geometry::project(camera, in_to);
-      if (!pixel) continue;
-      const auto seen_m = depth_between(to.depth_m, *pixel);
-      if (seen_m) residuals.push_back(std::abs(*seen_m / in_to.z() - 1.0));
+      const Eigen::Vector2d pixel(x, y);
+      const Eigen::Vector3d bearing = geometry::bearing(camera, pixel);
+      const Eigen::Vector3d in_from = bearing / bearing.z() * depth_m;
+      const Eigen::Vector3d in_to = to_from_from * in_from;
+      const auto landed = geometry::project(camera, in_to);
+      if (!landed) continue;
+      const auto seen_m = depth_between(to.depth_m, *landed);
+      if (seen_m) carried.push_back({pixel, *landed, in_to.z(), *seen_m});
     }
   }
-  return residuals;
+  return carried;
 }
 
 }  // namespace samewhere::bench
