@@ -89,6 +89,10 @@ std::vector<double> depth_residuals(const core::Camera& camera, const Shot& from
   return residuals;
 }
 
+void append(const std::vector<double>& more, std::vector<double>& values) {
+  values.insert(values.end(), more.begin(), more.end());
+}
+
 // Whether both frames are there and show the same state of the building.
 bool is_one_visit(const twin::Walkthrough& walk, int first, int second) {
   if (second >= walk.num_frames()) return false;
