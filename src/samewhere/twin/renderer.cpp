@@ -5,6 +5,7 @@
 #include <span>
 
 #include <samewhere/geometry/camera.hpp>
+#include <samewhere/twin/noise.hpp>
 #include <samewhere/twin/renderer.hpp>
 #include <samewhere/twin/texture.hpp>
 
@@ -101,6 +102,63 @@ void Renderer::shade_run(const Eye& eye, MovingThings& moving, const Run& run, V
   }
 }
 
+// What a ray meets of the building, without textures. A lamp is dimmed to what a varnish that is
+// not quite smooth leaves of it.
+Colour Renderer::seen_along(const Ray& ray) const {
+  constexpr float kBrightestMirrored = 6.0F;
+  const auto hit = rays_.first_hit(ray);
+  if (!hit) return Colour::Zero();
+  const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hit->rectangle)];
+  if (is_emitting(r.material)) {
+    return mean_reflectance(r.material) * std::min(r.material.radiance, kBrightestMirrored);
+  }
+  const Eigen::Vector3f point = ray.origin + hit->reach * ray.direction;
+  return mean_reflectance(r.material) * light_.at(hit->rectangle, r.right_up_m(point));
+}
+
+// Adds what glass, varnish and polish mirror (Schlick, An Inexpensive BRDF Model for Physically
+// based Rendering, 1994): for some pixels, interpolated between them. It moves over the surface as
+// the eye moves. No surface is quite flat: its normal wavers.
+void Renderer::mirror_in_run(const Eye& eye, const Run& run, View& view) const {
+  constexpr std::size_t kStep = 4;
+  constexpr float kStraightOn = 0.04F;  // of varnish and glass
+  constexpr float kWave_m = 0.09F;
+  constexpr float kWaver = 0.02F;
+  constexpr float kOffSurface_m = 1e-3F;
+  const Rectangle& r = building_.rectangles[static_cast<std::size_t>(run.surface())];
+  const Eigen::Vector3f flat_normal = r.normal();
+  const auto mirrored_at = [&](std::size_t i) -> Colour {
+    const Eigen::Vector3f point = eye.position + run.hits[i].reach * run.directions[i];
+    const Eigen::Vector2f at = r.right_up_m(point) / kWave_m;
+    const std::uint32_t seed = r.material.wear_seed;
+    const Eigen::Vector3f normal =
+        (flat_normal + kWaver * (value_noise(at.x(), at.y(), seed) * r.right +
+                                 value_noise(at.x(), at.y(), seed + 1) * r.up))
+            .normalized();
+    const Eigen::Vector3f direction = run.directions[i].normalized();
+    const float cosine = std::min(std::abs(direction.dot(normal)), 1.0F);
+    const float aslant = 1.0F - cosine;
+    const float share =
+        kStraightOn + (1.0F - kStraightOn) * aslant * aslant * aslant * aslant * aslant;
+    const Ray ray{point + kOffSurface_m * flat_normal,
+                  direction - 2.0F * direction.dot(normal) * normal};
+    return std::min(r.material.gloss * share, 1.0F) * seen_along(ray);
+  };
+  auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
+  const std::size_t last = run.hits.size() - 1;
+  Colour mirrored = mirrored_at(0);
+  for (std::size_t first = 0; first <= last; first += kStep) {
+    const std::size_t next = std::min(first + kStep, last);
+    const Colour next_mirrored = mirrored_at(next);
+    for (std::size_t i = first; i < first + kStep && i <= last; ++i) {
+      const float ratio = static_cast<float>(i - first) / static_cast<float>(kStep);
+      const Colour sum = mirrored + ratio * (next_mirrored - mirrored);
+      radiance[i] += cv::Vec3f(sum[0], sum[1], sum[2]);
+    }
+    mirrored = next_mirrored;
+  }
+}
+
 // What things that move keep from the surfaces close to them changes slowly over the picture: it is
 // computed for some pixels and interpolated.
 void Renderer::darken_run(const Eye& eye, const MovingThings& moving, const Run& run,
@@ -146,6 +204,10 @@ void Renderer::render_row(const Eye& eye, MovingThings& moving, int y, View& vie
                   .directions = std::span(directions).subspan(first, end - first),
                   .hits = std::span(hits).subspan(first, end - first)};
     shade_run(eye, moving, run, view);
+    if (seen < num_at_rest &&
+        building_.rectangles[static_cast<std::size_t>(seen)].material.gloss > 0.0F) {
+      mirror_in_run(eye, run, view);
+    }
     if (!moving.is_empty() && seen < num_at_rest) darken_run(eye, moving, run, view);
   }
 }

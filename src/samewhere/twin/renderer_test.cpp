@@ -142,6 +142,26 @@ TEST(Renderer, WhatMovesIsLitByTheRoomAndDarkensTheFloorBelowIt) {
             0.85F * mean_of(empty.radiance.at<cv::Vec3f>(floor_px, 80)));
 }
 
+// On the floor half way between the eye and the lamp's mirror image.
+TEST(Renderer, APolishedFloorMirrorsTheLampWhereTheEyeHasIt) {
+  TestRoom room(Colour::Constant(0.3F));
+  const RayScene rays(room.building.rectangles);
+  const auto floor_below = [&](double x_m) {
+    const Renderer renderer(room.building, rays, kSmallCamera);
+    const View view = renderer.render(looking({x_m, 0.0, 1.0}, 0.0));
+    // the floor at x = -0.625 as seen from 2.5 m behind the lamp and from nearer
+    const double ahead_m = -0.625 - x_m;
+    return mean_of(view.radiance.at<cv::Vec3f>(60 + static_cast<int>(130.0 / ahead_m), 80));
+  };
+  const float matt = floor_below(-2.5);
+  const float matt_from_nearer = floor_below(-2.9);
+  room.building.rectangles[TestRoom::kFloor].material.gloss = 1.0F;
+  const float polished = floor_below(-2.5);
+  EXPECT_GT(polished - matt, 0.1F);  // the lamp itself
+  EXPECT_GT(floor_below(-2.9) - matt_from_nearer, 0.0F);
+  EXPECT_LT(floor_below(-2.9) - matt_from_nearer, 0.5F * (polished - matt));
+}
+
 TEST(Renderer, TheMeterReadsTheMeanOfThePicture) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
