@@ -79,13 +79,15 @@ void Furnisher::add_extinguisher(const Place& place) {
   piece.add_bar({.from_m = {0.0F, 0.98F, kOut_m},
                  .to_m = {0.0F, 1.04F, kOut_m},
                  .radius_m = 0.03F,
-                 .num_sides = 8},
+                 .num_sides = 8,
+                 .has_ends = true},
                 steel);
   piece.add_block({{-0.06F, 1.04F, kOut_m - 0.012F}, {0.05F, 1.06F, kOut_m + 0.012F}}, black);
   piece.add_bar({.from_m = {0.03F, 1.03F, kOut_m},
                  .to_m = {0.1F, 0.72F, kOut_m + 0.03F},
                  .radius_m = 0.011F,
-                 .num_sides = 6},
+                 .num_sides = 6,
+                 .has_ends = true},
                 black);
   piece.add_box(centred({0.0F, 0.76F}, {0.09F, 0.16F}, {kOut_m, kOut_m + 0.083F}), {label, label});
   piece.add_box(centred({0.0F, 0.9F}, {0.05F, 0.04F}, {0.0F, 0.03F}), {steel, steel});

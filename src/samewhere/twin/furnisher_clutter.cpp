@@ -68,27 +68,28 @@ void add_vessel(Piece& piece, const Box& room) {
                  piece.made_of(Finish::kPlastic, vivid(piece)));
 }
 
-// A coat on its hook: wide at the shoulders, narrower where it hangs open.
+// A coat on its hook: narrow below the collar, wider from the shoulders on.
 void add_coat(Piece& piece, float x_m, float hook_m) {
+  constexpr float kShoulder_m = 0.12F;
   Draws& draws = piece.draws();
   const float long_m = draws.blend(0.55F, 0.95F);
-  const float half_m = draws.blend(0.07F, 0.1F);
+  const float radius_m = draws.blend(0.08F, 0.105F);
   Material cloth = piece.made_of(Finish::kFabric, vivid(piece), vivid(piece));
   cloth.number = draws.pick(3);
-  piece.add_post({.low_m = hook_m - long_m,
-                  .high_m = hook_m - 0.12F,
-                  .middle_m = {x_m, 0.015F + half_m},
-                  .half_m = {0.115F, half_m},
-                  .num_sides = 12,
-                  .has_lid = true},
-                 cloth);
-  piece.add_post({.low_m = hook_m - 0.12F,
-                  .high_m = hook_m - 0.03F,
-                  .middle_m = {x_m, 0.015F + half_m},
-                  .half_m = {0.07F, 0.05F},
-                  .num_sides = 10,
-                  .has_lid = true},
-                 cloth);
+  const Eigen::Vector3f hook(x_m, hook_m, 0.015F + radius_m);
+  const Eigen::Vector3f down = -Eigen::Vector3f::UnitY();
+  piece.add_bar({.from_m = hook + long_m * down,
+                 .to_m = hook + kShoulder_m * down,
+                 .radius_m = radius_m,
+                 .num_sides = 12,
+                 .has_ends = true},
+                cloth);
+  piece.add_bar({.from_m = hook + kShoulder_m * down,
+                 .to_m = hook + 0.03F * down,
+                 .radius_m = 0.055F,
+                 .num_sides = 10,
+                 .has_ends = true},
+                cloth);
 }
 
 void add_bag(Piece& piece, float x_m, float hook_m) {

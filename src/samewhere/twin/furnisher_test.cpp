@@ -130,7 +130,7 @@ TEST(Furnisher, ThingsOnAWallLookIntoTheRoom) {
   Furnisher f(building, 0, {});
   f.add_wall(kWall, 0.0F, 2.6F, WallFinish::kPlaster);
   f.add_notice_board({kWall, 2.0F});
-  f.add_cabinet({kWall, 4.0F});
+  f.add_framed_poster({kWall, 4.0F});
   for (const auto& r : building.rectangles) {
     EXPECT_GE(-r.normal().y(), -1e-5F) << "looks into the wall";
     EXPECT_LE(r.corner_m.y(), 2.0F + 1e-5F);

@@ -204,7 +204,7 @@ std::vector<Eigen::Vector2f> Dresser::add_bays(Use use, float pitch_m, Gap& gap)
 
 // Piece by piece.
 void Dresser::fill_long_gap(Gap gap) {
-  constexpr float kPiece_m = 2.2F;
+  constexpr float kPiece_m = 1.6F;
   const float to_m = gap.to_m;
   const float rest_m = to_m - gap.from_m;
   const int num_pieces = std::max(1, static_cast<int>(rest_m / kPiece_m));
