@@ -9,13 +9,13 @@ namespace samewhere::twin {
 namespace {
 
 Colour vivid(Piece& piece) {
-  static const std::array<Colour, 9> kDyes = {
+  static const std::array<Colour, 9> dyes = {
       colour_of_srgb(0.80F, 0.16F, 0.14F), colour_of_srgb(0.12F, 0.34F, 0.66F),
       colour_of_srgb(0.92F, 0.72F, 0.12F), colour_of_srgb(0.10F, 0.46F, 0.26F),
       colour_of_srgb(0.88F, 0.45F, 0.12F), colour_of_srgb(0.45F, 0.18F, 0.44F),
       colour_of_srgb(0.10F, 0.10F, 0.12F), colour_of_srgb(0.93F, 0.92F, 0.88F),
       colour_of_srgb(0.16F, 0.56F, 0.60F)};
-  return piece.draws().blend(kDyes);
+  return piece.draws().blend(dyes);
 }
 
 // A packet or a file that stands, print on its front.
@@ -174,7 +174,8 @@ void Furnisher::add_leaflets(const Place& place) {
     piece.begin_part(i);
     Draws& draws = piece.draws();
     const float x_m = 0.14F * (static_cast<float>(i % kNumColumns) - 2.0F);
-    const float y_m = 0.66F + 0.3F * static_cast<float>(i / kNumColumns);
+    const int row = i / kNumColumns;
+    const float y_m = 0.66F + 0.3F * static_cast<float>(row);
     const float out_m = draws.blend(0.016F, 0.04F);
     const float high_m = draws.blend(0.19F, 0.25F);
     Material print = piece.made_of(Finish::kPaper, vivid(piece), vivid(piece));
