@@ -160,11 +160,11 @@ Motion::Angles Motion::angles_at(double stamp_s) const {
   // one swing in nine metres, of the place, not of the time
   constexpr double kSwing_rad_m = 0.7;
   const Jet swing = sin(kSwing_rad_m * (carried[kDriveX] + carried[kDriveY]));
-  return {carried[kDriveLook] + look_aside_rad_ * (moving * swing) +
-              shaken(shake_.look_yaw_rad, shake_.yaw_rad),
-          Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +
-              shaken(shake_.look_pitch_rad, shake_.pitch_rad),
-          shaken(shake_.look_roll_rad, shake_.roll_rad)};
+  return {
+      carried[kDriveLook] + look_aside_rad_ * swing + shaken(shake_.look_yaw_rad, shake_.yaw_rad),
+      Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +
+          shaken(shake_.look_pitch_rad, shake_.pitch_rad),
+      shaken(shake_.look_roll_rad, shake_.roll_rad)};
 }
 
 }  // namespace samewhere::twin

@@ -242,9 +242,7 @@ TEST(Motion, WhoLooksAsideSeesTheSameThingsEachTimeAndWalksNoOtherWay) {
         std::remainder(yaw_of(pose) - yaw_of(ahead.world_from_body(t)), 2.0 * kPi);
     most_rad = std::max(most_rad, std::abs(aside_rad));
     const Eigen::Vector3d floor_m = aside.floor_position_m(t);
-    // at walking pace it is a matter of the place alone
-    const double expected_rad = 0.8 * std::sin(0.7 * (floor_m.x() + floor_m.y()));
-    EXPECT_LE(std::abs(aside_rad), std::abs(expected_rad) + 0.02) << t;
+    EXPECT_NEAR(aside_rad, 0.8 * std::sin(0.7 * (floor_m.x() + floor_m.y())), 1e-9) << t;
   }
   EXPECT_GT(most_rad, 0.7);
 }
