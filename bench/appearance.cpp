@@ -140,53 +140,84 @@ void add_pair(const ViewPair& pair, int num_inliers, int num_features, PairFigur
   figures.overlaps.push_back(pair.overlap);
 }
 
-// All pairs, by class and by parallax.
+// By class for each way; all together by parallax.
 struct MatchFigures {
-  std::array<PairFigures, kNumClasses> by_class;
+  std::array<std::array<PairFigures, kNumClasses>, kWays.size()> by_class;
   std::array<PairFigures, kAngles_deg.size() - 1> by_parallax;
 };
 
-MatchFigures match(const std::string& name, const Views& views, int num_pairs) {
-  const auto drawn = draw_pairs(views.geometry, num_pairs);
-  core::Progress progress("matching pairs of " + name, kNumClasses);
-  MatchFigures figures;
+void add_by_parallax(const ViewPair& pair, int num_inliers, int num_features,
+                     MatchFigures& figures) {
+  const auto above =
+      std::upper_bound(kAngles_deg.begin() + 1, kAngles_deg.end(), pair.parallax_deg);
+  if (above == kAngles_deg.end()) return;
+  const auto bin = static_cast<std::size_t>(above - kAngles_deg.begin()) - 1;
+  add_pair(pair, num_inliers, num_features, figures.by_parallax[bin]);
+}
+
+void match_way(Way way, const Views& views, int num_pairs, MatchFigures& figures) {
+  const auto drawn = draw_pairs(views.geometry, way, num_pairs);
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     for (const ViewPair& pair : drawn[i]) {
       const OrbFeatures& first = views.orb[static_cast<std::size_t>(pair.first)];
       const OrbFeatures& second = views.orb[static_cast<std::size_t>(pair.second)];
       const int num_inliers = count_inliers(first, second);
-      add_pair(pair, num_inliers, first.size(), figures.by_class[i]);
-      const auto above =
-          std::upper_bound(kAngles_deg.begin() + 1, kAngles_deg.end(), pair.parallax_deg);
-      if (above == kAngles_deg.end()) continue;
-      const auto bin = static_cast<std::size_t>(above - kAngles_deg.begin()) - 1;
-      add_pair(pair, num_inliers, first.size(), figures.by_parallax[bin]);
+      add_pair(pair, num_inliers, first.size(), figures.by_class[static_cast<std::size_t>(way)][i]);
+      if (way == Way::kAny) add_by_parallax(pair, num_inliers, first.size(), figures);
     }
-    progress.update(static_cast<int>(i) + 1);
+  }
+}
+
+MatchFigures match(const std::string& name, const Views& views, int num_pairs) {
+  core::Progress progress("matching pairs of " + name, static_cast<int>(kWays.size()));
+  MatchFigures figures;
+  int num_done = 0;
+  for (const Way way : kWays) {
+    match_way(way, views, num_pairs, figures);
+    progress.update(++num_done);
   }
   return figures;
 }
 
+// What is told of a class of pairs.
+struct PairFigure {
+  const char* name;
+  std::vector<double> PairFigures::*values;
+};
+
+constexpr std::array<PairFigure, 3> kPairFigures = {
+    {{"inliers", &PairFigures::inliers},
+     {"inliers / features", &PairFigures::inlier_ratios},
+     {"overlap", &PairFigures::overlaps}}};
+
+std::optional<double> median(const PairFigures& pairs, const PairFigure& figure) {
+  const std::vector<double>& values = pairs.*figure.values;
+  return values.size() >= kMinPairs ? quantile(values, 0.5) : std::nullopt;
+}
+
+void add_class_figures(const MatchFigures& matches, Way way, const PairFigure& figure,
+                       std::vector<Figure>& figures) {
+  constexpr std::array<const char*, kWays.size()> kNames = {"", "sideways ", "forward "};
+  const auto& by_class = matches.by_class[static_cast<std::size_t>(way)];
+  for (std::size_t i = 0; i < by_class.size(); ++i) {
+    figures.push_back({fmt::format("{}, {}{}", figure.name, kNames[static_cast<std::size_t>(way)],
+                                   class_name(static_cast<int>(i))),
+                       median(by_class[i], figure)});
+  }
+}
+
 void add_match_figures(const MatchFigures& matches, std::vector<Figure>& figures) {
-  const auto add = [&figures](const std::string& what, std::vector<double> PairFigures::*values,
-                              const MatchFigures& of) {
-    const auto median = [values](const PairFigures& pairs) {
-      const bool is_enough = (pairs.*values).size() >= kMinPairs;
-      return is_enough ? quantile(pairs.*values, 0.5) : std::nullopt;
-    };
-    for (std::size_t i = 0; i < of.by_parallax.size(); ++i) {
+  for (const PairFigure& figure : kPairFigures) {
+    for (std::size_t i = 0; i < matches.by_parallax.size(); ++i) {
       figures.push_back(
-          {fmt::format("{}, parallax {}-{} deg", what, kAngles_deg[i], kAngles_deg[i + 1]),
-           median(of.by_parallax[i])});
+          {fmt::format("{}, parallax {}-{} deg", figure.name, kAngles_deg[i], kAngles_deg[i + 1]),
+           median(matches.by_parallax[i], figure)});
     }
-    for (std::size_t i = 0; i < of.by_class.size(); ++i) {
-      figures.push_back(
-          {fmt::format("{}, {}", what, class_name(static_cast<int>(i))), median(of.by_class[i])});
-    }
-  };
-  add("inliers", &PairFigures::inliers, matches);
-  add("inliers / features", &PairFigures::inlier_ratios, matches);
-  add("overlap", &PairFigures::overlaps, matches);
+    add_class_figures(matches, Way::kAny, figure, figures);
+  }
+  for (const Way way : {Way::kSideways, Way::kForward}) {
+    add_class_figures(matches, way, kPairFigures.front(), figures);
+  }
 }
 
 SourceFigures measure(const std::string& name, const Options& options) {
@@ -197,18 +228,21 @@ SourceFigures measure(const std::string& name, const Options& options) {
   return source;
 }
 
-// The value over that of the recorded source nearest to it; nothing where there is none.
+// The value over that of the recorded source nearest to it, 1 between two of them: a picture may
+// well be like either. Nothing where there is none.
 std::optional<double> ratio_to_nearest(double value, std::size_t row,
                                        const std::vector<SourceFigures>& sources) {
   const auto log_of = [](double x) { return std::log(std::max(x, 1e-9)); };
-  std::optional<double> nearest;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
   for (const SourceFigures& source : sources) {
     const std::optional<double>& real = source.figures[row].value;
     if (source.is_twin || !real) continue;
-    const double log_ratio = log_of(value) - log_of(*real);
-    if (!nearest || std::abs(log_ratio) < std::abs(*nearest)) nearest = log_ratio;
+    lowest = std::min(lowest, *real);
+    highest = std::max(highest, *real);
   }
-  return nearest ? std::optional(std::exp(*nearest)) : std::nullopt;
+  if (lowest > highest) return std::nullopt;
+  return std::exp(log_of(value) - log_of(std::clamp(value, lowest, highest)));
 }
 
 std::string as_cell(const std::optional<double>& value) {
@@ -259,9 +293,10 @@ std::function<void()> set_up(CLI::App& app) {
       "and\n"
       "the inliers of 1000 ORB features (ratio 0.8) under one fundamental matrix, by baseline "
       "over\n"
-      "median depth and by angle between the views. '!' marks what is further than a factor of "
-      "two\n"
-      "from every recorded source.");
+      "median depth and by angle between the views; the same apart for baselines that run aside "
+      "and
+      "
+      "forward. '!' marks what is further than a factor of two from every recorded source.");
   app.add_option("SOURCE", options->sources, "recordings with depth and poses, or twin:PRESET")
       ->required();
   app.add_option("--width", options->width_px,

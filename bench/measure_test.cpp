@@ -105,19 +105,31 @@ TEST(ViewPairs, ParallaxIsTheAngleBetweenTheDirectionsThatASurfaceIsSeenFrom) {
   EXPECT_NEAR(shared_view(wall_view(0.0), wall_view(0.0)).parallax_deg, 0.0, 1e-6);
 }
 
+TEST(ViewPairs, ABaselineRunsAsideOrAlongTheViewWhicheverWayRound) {
+  const ViewGeometry here = wall_view(0.0);
+  const ViewGeometry aside = wall_view(0.3);
+  ViewGeometry ahead = here;
+  ahead.world_from_camera.translation = {0.1, 0.0, 0.3};
+  EXPECT_TRUE(goes(Way::kSideways, here, aside) && goes(Way::kSideways, aside, here));
+  EXPECT_TRUE(goes(Way::kForward, here, ahead) && goes(Way::kForward, ahead, here));
+  EXPECT_FALSE(goes(Way::kForward, here, aside) || goes(Way::kSideways, here, ahead));
+  EXPECT_TRUE(goes(Way::kAny, here, aside) && goes(Way::kAny, here, ahead));
+}
+
 TEST(ViewPairs, PairsFallIntoTheirClassAndAreDrawnAlike) {
   EXPECT_EQ(pair_class(wall_view(0.0), wall_view(0.3)), 10);  // 0.15 of the depth, no angle
   EXPECT_EQ(pair_class(wall_view(0.0), wall_view(2.0)), -1);
   std::vector<ViewGeometry> views;
   for (int i = 0; i < 12; ++i) views.push_back(wall_view(0.09 * i));
-  const auto pairs = draw_pairs(views, 5);
+  const auto pairs = draw_pairs(views, Way::kAny, 5);
   EXPECT_EQ(pairs[0].size(), 5U);
   for (const ViewPair& pair : pairs[10]) {
     const int num_steps = pair.second - pair.first;
     EXPECT_TRUE(num_steps >= 3 && num_steps <= 4) << num_steps;
   }
-  const auto again = draw_pairs(views, 5);
+  const auto again = draw_pairs(views, Way::kAny, 5);
   EXPECT_EQ(pairs[5].front().first, again[5].front().first);
+  EXPECT_TRUE(draw_pairs(views, Way::kForward, 5)[10].empty());
 }
 
 TEST(WholeView, TheMostAlikeComeFirst) {

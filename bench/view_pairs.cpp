@@ -74,14 +74,16 @@ int interval_of(double value, const std::array<double, 6>& limits) {
 
 using Candidates = std::array<std::vector<std::pair<int, int>>, kNumClasses>;
 
-Candidates pairs_by_class(const std::vector<ViewGeometry>& views) {
+Candidates pairs_by_class(const std::vector<ViewGeometry>& views, Way way) {
   Candidates candidates;
   const int num_views = static_cast<int>(views.size());
   for (int first = 0; first < num_views; ++first) {
     for (int second = first + 1; second < num_views; ++second) {
-      const int found = pair_class(views[static_cast<std::size_t>(first)],
-                                   views[static_cast<std::size_t>(second)]);
-      if (found >= 0) candidates[static_cast<std::size_t>(found)].emplace_back(first, second);
+      const ViewGeometry& a = views[static_cast<std::size_t>(first)];
+      const ViewGeometry& b = views[static_cast<std::size_t>(second)];
+      const int found = pair_class(a, b);
+      if (found < 0 || !goes(way, a, b)) continue;
+      candidates[static_cast<std::size_t>(found)].emplace_back(first, second);
     }
   }
   return candidates;
@@ -140,6 +142,18 @@ SharedView shared_view(const ViewGeometry& first, const ViewGeometry& second) {
           .parallax_deg = median(parallaxes_deg)};
 }
 
+bool goes(Way way, const ViewGeometry& first, const ViewGeometry& second) {
+  if (way == Way::kAny) return true;
+  const core::Rigid3& a = first.world_from_camera;
+  const core::Rigid3& b = second.world_from_camera;
+  const Eigen::Vector3d ahead =
+      a.rotation * Eigen::Vector3d::UnitZ() + b.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d baseline = b.translation - a.translation;
+  const double along = std::abs(ahead.dot(baseline));
+  const bool is_forward = along > std::numbers::sqrt2 / 2.0 * ahead.norm() * baseline.norm();
+  return is_forward == (way == Way::kForward);
+}
+
 int pair_class(const ViewGeometry& first, const ViewGeometry& second) {
   const double depth_m = 0.5 * (first.median_depth_m + second.median_depth_m);
   if (depth_m <= 0.0) return -1;
@@ -160,8 +174,8 @@ std::string class_name(int pair_class) {
 }
 
 std::array<std::vector<ViewPair>, kNumClasses> draw_pairs(const std::vector<ViewGeometry>& views,
-                                                          int max_pairs) {
-  const Candidates candidates = pairs_by_class(views);
+                                                          Way way, int max_pairs) {
+  const Candidates candidates = pairs_by_class(views, way);
   std::array<std::vector<ViewPair>, kNumClasses> drawn;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     core::Random random(core::seed_of(kSeed, "view pairs", i));

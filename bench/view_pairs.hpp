@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,13 @@ inline constexpr std::array<double, 6> kBaselineRatios = {0.0, 0.05, 0.1, 0.2, 0
 inline constexpr std::array<double, 6> kAngles_deg = {0.0, 5.0, 10.0, 20.0, 30.0, 45.0};
 inline constexpr int kNumClasses = 25;
 
+// Which way the baseline runs: within 45 degrees of the mean of the two optical axes, or aside. At
+// the same length a camera that goes forward changes its view of what is ahead far less.
+enum class Way : std::uint8_t { kAny, kSideways, kForward };
+inline constexpr std::array<Way, 3> kWays = {Way::kAny, Way::kSideways, Way::kForward};
+
+bool goes(Way way, const ViewGeometry& first, const ViewGeometry& second);
+
 // Class 5 * baseline + angle of a pair, or -1 outside all limits.
 int pair_class(const ViewGeometry& first, const ViewGeometry& second);
 // "t .05-.1, 5-10 deg"
@@ -53,9 +61,10 @@ struct ViewPair {
   double parallax_deg = 0.0;  // the mean of both ways
 };
 
-// Of each class at most max_pairs, drawn with a fixed seed among those that overlap by at least 0.3
-// both ways; fewer where the class has no more or 20 * max_pairs draws did not find them.
+// Of each class at most max_pairs that go this way, drawn with a fixed seed among those that
+// overlap by at least 0.3 both ways; fewer where the class has no more or 20 * max_pairs draws did
+// not find them.
 std::array<std::vector<ViewPair>, kNumClasses> draw_pairs(const std::vector<ViewGeometry>& views,
-                                                          int max_pairs);
+                                                          Way way, int max_pairs);
 
 }  // namespace samewhere::bench

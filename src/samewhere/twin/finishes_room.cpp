@@ -56,7 +56,8 @@ float marked(const TexturePoint& p, const Material& m, float strength) {
   const TexturePoint crumpled_p = crumpled(p, grain);
   float marks = 0.8F * spots(crumpled_p, {.cell_m = 0.07F, .density = 0.16F}, grain + 2) +
                 0.3F * spots(crumpled_p, {.cell_m = 0.19F, .density = 0.25F}, grain + 3) +
-                0.6F * scratches(crumpled_p, {.cell_m = 0.29F, .density = 0.3F}, grain + 4);
+                0.6F * scratches(crumpled_p, {.cell_m = 0.29F, .density = 0.3F}, grain + 4) +
+                1.2F * spots(p, {.cell_m = 0.03F, .density = 0.04F}, grain + 5);  // chips
   const std::uint32_t wear = m.wear_seed;
   marks += 0.25F * spots(crumpled_p, {.cell_m = 0.37F, .density = 0.1F}, wear);
   constexpr float kFine_m = 0.0032F;

@@ -1,3 +1,4 @@
+#include <samewhere/twin/clutter.hpp>
 #include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/piece.hpp>
 
@@ -51,7 +52,7 @@ void Furnisher::add_framed_poster(const Place& place) {
   const Material frame = piece.made_of(Finish::kPaint, piece.draws().blend(frames));
   const float up_m = piece.draws().shift(0.03F);
   const Box sheet = centred({0.0F, 1.55F + up_m}, {0.6F, 0.84F}, {0.0F, 0.012F});
-  piece.add_paper(sheet, kMinOwnPoster);
+  piece.add_paper(sheet, kMinOwnPoster, Cover::kGlass);
   Box around = sheet;
   around.high_m.z() = 0.022F;
   piece.begin_object("picture frame");
@@ -78,13 +79,15 @@ void Furnisher::add_extinguisher(const Place& place) {
   piece.add_bar({.from_m = {0.0F, 0.98F, kOut_m},
                  .to_m = {0.0F, 1.04F, kOut_m},
                  .radius_m = 0.03F,
-                 .num_sides = 8},
+                 .num_sides = 8,
+                 .has_ends = true},
                 steel);
   piece.add_block({{-0.06F, 1.04F, kOut_m - 0.012F}, {0.05F, 1.06F, kOut_m + 0.012F}}, black);
   piece.add_bar({.from_m = {0.03F, 1.03F, kOut_m},
                  .to_m = {0.1F, 0.72F, kOut_m + 0.03F},
                  .radius_m = 0.011F,
-                 .num_sides = 6},
+                 .num_sides = 6,
+                 .has_ends = true},
                 black);
   piece.add_box(centred({0.0F, 0.76F}, {0.09F, 0.16F}, {kOut_m, kOut_m + 0.083F}), {label, label});
   piece.add_box(centred({0.0F, 0.9F}, {0.05F, 0.04F}, {0.0F, 0.03F}), {steel, steel});
@@ -108,6 +111,8 @@ void Furnisher::add_cabinet(const Place& place) {
     piece.add_box(centred({side * 0.05F, 0.7F}, {0.02F, 0.14F}, {0.315F, 0.335F}), {steel, steel});
     piece.add_box(centred({side * 0.222F, 0.18F}, {0.2F, 0.08F}, {0.315F, 0.317F}), {slots, leaf});
   }
+  piece.begin_part(0);
+  add_clutter(piece, {{-0.43F, 1.2F, 0.02F}, {0.43F, 1.52F, 0.28F}});
   piece.end_object();
   piece.add_paper(centred({0.22F, 0.95F}, {0.15F, 0.21F}, {0.315F, 0.316F}), kMinOwnSheet);
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <samewhere/twin/clutter.hpp>
 #include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/piece.hpp>
 
@@ -129,7 +130,7 @@ void Furnisher::add_shelf(const Spot& spot) {
     const float y_m = 0.06F + kPitch_m * static_cast<float>(i);
     piece.add_box({{-kHalf_m + 0.02F, y_m, -0.165F}, {kHalf_m - 0.02F, y_m + 0.02F, 0.17F}},
                   {board, board});
-    const float fill = piece.draws().blend(0.2F, 1.0F);
+    const float fill = piece.draws().blend(0.2F, 0.72F);
     const float deep_m = piece.draws().blend(0.05F, 0.14F);
     const float high_m = piece.draws().blend(0.22F, 0.32F);
     const Material books = piece.made_of(Finish::kBooks, paints::kGrey, paints::kWhite);
@@ -137,6 +138,11 @@ void Furnisher::add_shelf(const Spot& spot) {
     piece.add_box({{-kHalf_m + 0.025F, y_m + 0.02F, -0.165F},
                    {-kHalf_m + 0.025F + 0.84F * fill, y_m + 0.02F + high_m, deep_m}},
                   {books, piece.made_of(Finish::kPlastic, paints::kGrey)});
+  }
+  for (int i = 0; i <= kNumBoards; ++i) {
+    piece.begin_part(i);
+    const float y_m = 0.08F + kPitch_m * static_cast<float>(i);
+    add_clutter(piece, {{0.2F, y_m, -0.02F}, {kHalf_m - 0.03F, y_m + 0.3F, 0.165F}});
   }
   piece.end_object();
 }

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <samewhere/twin/clutter.hpp>
 #include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/piece.hpp>
 
@@ -103,6 +104,8 @@ void Furnisher::add_table(const Spot& spot) {
                      .size_m = {0.21F, 0.297F}},
                     paper);
   }
+  piece.begin_part(0);
+  add_clutter(piece, {{-0.57F, kTop_m, -0.33F}, {0.57F, kTop_m + 0.25F, -0.1F}});
   piece.end_object();
 }
 
@@ -138,6 +141,9 @@ void Furnisher::add_desk(const Spot& spot) {
                    .up = -Eigen::Vector3f::UnitZ(),
                    .size_m = {0.21F, 0.297F}},
                   paper);
+  piece.begin_part(0);
+  add_clutter(piece, {{-0.78F, kTop_m, -0.36F}, {-0.5F, kTop_m + 0.3F, -0.12F}});
+  add_clutter(piece, {{0.5F, kTop_m, -0.3F}, {0.79F, kTop_m + 0.3F, 0.05F}});
   piece.end_object();
 }
 

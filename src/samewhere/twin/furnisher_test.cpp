@@ -50,6 +50,10 @@ void furnish(Furnisher& f, int number) {
   f.add_exit_sign({0.0F, 0.0F}, 0.4F, 2.6F);
   f.add_smoke_detector({0.0F, 0.0F}, 2.6F);
   f.add_high_bay_lamp({0.0F, 0.0F}, 6.0F);
+  f.add_coat_rack({kWall, 1.0F});
+  f.add_leaflets({kWall, 2.5F});
+  f.add_low_shelf({kWall, 4.0F});
+  f.add_crates({kWall, 6.0F});
 }
 
 core::Rigid3 turned(double angle_rad, const Eigen::Vector3d& moved_m) {
@@ -126,7 +130,7 @@ TEST(Furnisher, ThingsOnAWallLookIntoTheRoom) {
   Furnisher f(building, 0, {});
   f.add_wall(kWall, 0.0F, 2.6F, WallFinish::kPlaster);
   f.add_notice_board({kWall, 2.0F});
-  f.add_cabinet({kWall, 4.0F});
+  f.add_framed_poster({kWall, 4.0F});
   for (const auto& r : building.rectangles) {
     EXPECT_GE(-r.normal().y(), -1e-5F) << "looks into the wall";
     EXPECT_LE(r.corner_m.y(), 2.0F + 1e-5F);
@@ -146,6 +150,35 @@ TEST(Furnisher, FreeStandingThingsAreClosed) {
     whole_m2 += r.size_m.prod();
   }
   EXPECT_LT(sum.head<2>().norm(), 0.03F * whole_m2);
+}
+
+TEST(Furnisher, WhatStandsBeforeAWallTakesNoMoreRoomThanPromised) {
+  using Add = void (Furnisher::*)(const Place&);
+  struct Thing {
+    Add add;
+    Eigen::Vector2f most_m;  // width, depth
+  };
+  const Thing things[] = {{&Furnisher::add_coat_rack, {1.00F, 0.24F}},
+                          {&Furnisher::add_leaflets, {0.74F, 0.05F}},
+                          {&Furnisher::add_low_shelf, {0.90F, 0.31F}},
+                          {&Furnisher::add_crates, {0.52F, 0.39F}}};
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    for (const Thing& thing : things) {
+      Building building;
+      building.units = {Unit{}};
+      Furnisher f(building, 0, {.own_seed = seed, .similarity = 0.0});
+      (f.*thing.add)({kWall, 4.0F});
+      Eigen::AlignedBox3f box;
+      for (const auto& r : building.rectangles) {
+        box.extend(r.corner_m);
+        box.extend(r.at(r.size_m));
+      }
+      EXPECT_GT(building.rectangles.size(), 10U);
+      EXPECT_LE(box.sizes().x(), thing.most_m.x() + 1e-4F) << "seed " << seed;
+      EXPECT_LE(box.sizes().y(), thing.most_m.y() + 1e-4F) << "seed " << seed;
+      EXPECT_GE(box.min().z(), -1e-4F) << "seed " << seed;
+    }
+  }
 }
 
 TEST(Furnisher, AChairTurnsWithItsHeading) {

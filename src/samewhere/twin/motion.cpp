@@ -50,8 +50,11 @@ struct Motion::Angles {
 };
 
 Motion::Motion(const Route& route, std::uint64_t seed)
-    : carrier_(route.carrier), camera_height_m_(route.camera_height_m) {
+    : carrier_(route.carrier),
+      camera_height_m_(route.camera_height_m),
+      look_aside_rad_(route.look_aside_rad) {
   core::require(std::isfinite(camera_height_m_), "a route's camera has a finite height");
+  core::require(std::isfinite(look_aside_rad_), "a route looks aside by a finite angle");
   core::Random random(core::seed_of(seed, "twin.motion", 0));
   shake_ = camera_shake(route.carrier, random);
   drive_ = drive_along(route, random);
@@ -154,10 +157,14 @@ Motion::Angles Motion::angles_at(double stamp_s) const {
   const auto shaken = [&](const Waves& look, const Waves& shake) {
     return looking * sum_at(look, stamp_s) + moving * sum_at(shake, stamp_s);
   };
-  return {carried[kDriveLook] + shaken(shake_.look_yaw_rad, shake_.yaw_rad),
-          Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +
-              shaken(shake_.look_pitch_rad, shake_.pitch_rad),
-          shaken(shake_.look_roll_rad, shake_.roll_rad)};
+  // one swing in nine metres, of the place, not of the time
+  constexpr double kSwing_rad_m = 0.7;
+  const Jet swing = sin(kSwing_rad_m * (carried[kDriveX] + carried[kDriveY]));
+  return {
+      carried[kDriveLook] + look_aside_rad_ * swing + shaken(shake_.look_yaw_rad, shake_.yaw_rad),
+      Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +
+          shaken(shake_.look_pitch_rad, shake_.pitch_rad),
+      shaken(shake_.look_roll_rad, shake_.roll_rad)};
 }
 
 }  // namespace samewhere::twin

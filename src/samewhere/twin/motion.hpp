@@ -51,6 +51,7 @@ class Motion {
 
   Carrier carrier_;
   double camera_height_m_;
+  double look_aside_rad_ = 0.0;
   CameraShake shake_;
   Drive drive_;
 };

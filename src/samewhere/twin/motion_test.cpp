@@ -40,6 +40,11 @@ Route varied_route(Carrier carrier) {
        TurnTo{-1.0}, walk_to(12, 2, 4.5), walk_to(15, 2, 4.5), walk_to(15, 2.1, 4.5)});
 }
 
+Route looking_aside(Route route) {
+  route.look_aside_rad = 0.8;
+  return route;
+}
+
 Eigen::Vector3d forward_of(const core::Rigid3& world_from_body) {
   return world_from_body.rotation * Eigen::Vector3d::UnitZ();
 }
@@ -54,7 +59,7 @@ class CarriedCamera : public testing::TestWithParam<Carrier> {};
 TEST_P(CarriedCamera, DerivativesAreThoseOfThePose) {
   constexpr double kStep_s = 1e-4;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const Motion motion(varied_route(GetParam()), seed);
+    const Motion motion(looking_aside(varied_route(GetParam())), seed);
     for (double t = 0.05; t < motion.duration_s(); t += 0.0317) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << t << " s");
       const core::Rigid3 before = motion.world_from_body(t - kStep_s);
@@ -222,6 +227,24 @@ TEST(Motion, AWalkerIsLevelAndLooksAheadIntoABend) {
     mean_lead_rad += (yaw_of(motion.world_from_body(t)) - motion.heading_rad(t)) / 20.0;
   }
   EXPECT_GT(mean_lead_rad, 0.3);
+}
+
+TEST(Motion, WhoLooksAsideSeesTheSameThingsEachTimeAndWalksNoOtherWay) {
+  Route route = route_along(Carrier::kWalker, {walk_to(12, 0), walk_to(12, 8)});
+  const Motion ahead(route, 3);
+  route.look_aside_rad = 0.8;
+  const Motion aside(route, 3);
+  double most_rad = 0.0;
+  for (double t = 0.0; t < ahead.duration_s(); t += 0.1) {
+    const core::Rigid3 pose = aside.world_from_body(t);
+    EXPECT_NEAR((pose.translation - ahead.world_from_body(t).translation).norm(), 0.0, 1e-12);
+    const double aside_rad =
+        std::remainder(yaw_of(pose) - yaw_of(ahead.world_from_body(t)), 2.0 * kPi);
+    most_rad = std::max(most_rad, std::abs(aside_rad));
+    const Eigen::Vector3d floor_m = aside.floor_position_m(t);
+    EXPECT_NEAR(aside_rad, 0.8 * std::sin(0.7 * (floor_m.x() + floor_m.y())), 1e-9) << t;
+  }
+  EXPECT_GT(most_rad, 0.7);
 }
 
 TEST(Motion, AWalkerDriftsALittleAndARobotKeepsItsLine) {

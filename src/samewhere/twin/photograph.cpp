@@ -26,9 +26,10 @@ class ToneCurve {
   }
 
   float level(float light) const {
-    // noise may take a dark pixel below zero
-    const float step =
-        std::clamp(light * kStepsPerUnit, 0.0F, static_cast<float>(levels_.size() - 1));
+    // what is nearly black is made black; noise may take it below zero
+    constexpr float kBlack = 0.012F;
+    const float step = std::clamp((light - kBlack) / (1.0F - kBlack) * kStepsPerUnit, 0.0F,
+                                  static_cast<float>(levels_.size() - 1));
     return levels_[static_cast<std::size_t>(step)];
   }
 
@@ -87,12 +88,21 @@ class SensorNoise {
   float deviation(float signal) const { return std::sqrt(shot_ * std::max(signal, 0.0F) + read_); }
 
  private:
-  static constexpr float kShotNoise = 6e-5F;  // one over the photons that are white
-  static constexpr float kReadNoise = 3e-4F;
+  // what the camera's own smoothing leaves of it
+  static constexpr float kShotNoise = 1.5e-5F;  // one over the photons that would be white
+  static constexpr float kReadNoise = 1.5e-4F;
 
   float shot_;  // variance over signal
   float read_;  // variance
 };
+
+// Colours as cameras like them: further from grey.
+cv::Vec3f with_strong_colours(const cv::Vec3f& light) {
+  constexpr float kStrength = 1.25F;
+  const float grey = 0.11F * light[0] + 0.59F * light[1] + 0.30F * light[2];
+  const cv::Vec3f neutral(grey, grey, grey);
+  return neutral + kStrength * (light - neutral);
+}
 
 // Noise of the three channels of a pixel, of standard deviation 1: mostly common to them.
 std::array<float, 3> pixel_noise(std::uint64_t seed, std::uint64_t pixel) {
@@ -122,8 +132,9 @@ cv::Mat photograph(const cv::Mat& radiance, const Exposure& exposure, std::uint6
       const float scale = exposure.signal_per_radiance() *
                           vignette(static_cast<float>(x), static_cast<float>(y), radiance.size());
       const std::array<float, 3> noise = pixel_noise(seed, pixel);
+      const cv::Vec3f signals = scale * with_strong_colours(light[static_cast<std::size_t>(x)]);
       for (int channel = 0; channel < 3; ++channel) {
-        const float signal = scale * light[static_cast<std::size_t>(x)][channel];
+        const float signal = signals[channel];
         level[x][channel] = cv::saturate_cast<std::uint8_t>(tone.level(
             signal + sensor.deviation(signal) * noise[static_cast<std::size_t>(channel)]));
       }

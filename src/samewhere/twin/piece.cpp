@@ -15,6 +15,26 @@ Stance world_from_unit(const core::Rigid3& world_from_unit, const Stance& stand)
           .axes = turn * stand.axes};
 }
 
+// As lacquered, polished or worn as such things are.
+float usual_gloss(Finish finish) {
+  switch (finish) {
+    case Finish::kSteel:
+      return 2.0F;  // metals mirror more than any varnish
+    case Finish::kFloorTiles:
+      return 0.8F;
+    case Finish::kPlate:
+    case Finish::kSign:
+    case Finish::kPlastic:
+      return 0.6F;
+    case Finish::kPaint:
+    case Finish::kPlanks:
+    case Finish::kWood:
+      return 0.45F;
+    default:
+      return 0.0F;
+  }
+}
+
 }  // namespace
 
 namespace paints {
@@ -71,7 +91,8 @@ Material Piece::made_of(Finish finish, const Colour& colour, const Colour& secon
           .wear_seed = draws_.own_seed(),
           .pattern_seed = draws_.common_seed(),
           .own_pattern_seed = draws_.own_seed(),
-          .own_ratio = draws_.own_ratio()};
+          .own_ratio = draws_.own_ratio(),
+          .gloss = usual_gloss(finish)};
 }
 
 Material Piece::running(Finish finish, const Colour& colour, const Colour& second,
@@ -83,7 +104,8 @@ Material Piece::running(Finish finish, const Colour& colour, const Colour& secon
           .wear_seed = scramble(palette.wear_seed + plane),
           .pattern_seed = scramble(palette.pattern_seed + plane),
           .own_pattern_seed = scramble(palette.own_pattern_seed + plane),
-          .own_ratio = draws_.own_ratio()};
+          .own_ratio = draws_.own_ratio(),
+          .gloss = usual_gloss(finish)};
 }
 
 void Piece::begin_object(const std::string& name, bool is_unique) {
@@ -95,7 +117,7 @@ void Piece::begin_object(const std::string& name, bool is_unique) {
        .is_unique = is_unique});
 }
 
-void Piece::add_paper(const Box& sheet, double min_own) {
+void Piece::add_paper(const Box& sheet, double min_own, Cover cover) {
   constexpr int kNumPrints = 1 << 30;
   const int drawn = draws_.pick(kNumPrints, min_own);
   const bool is_own = draws_.was_own();
@@ -112,6 +134,7 @@ void Piece::add_paper(const Box& sheet, double min_own) {
       made_of(Finish::kPaper, is_white ? paints::kWhite : tint, hue_colour(look.uniform(), 0.7));
   paper.pattern_seed = paper.own_pattern_seed = print;
   paper.own_ratio = 0.0F;
+  paper.gloss = cover == Cover::kGlass ? 1.0F : 0.0F;
   if (is_own || is_new) {
     begin_object(fmt::format("paper {:08x}", print), true);
   } else {

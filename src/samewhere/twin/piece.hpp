@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <samewhere/twin/building.hpp>
@@ -17,6 +18,8 @@ struct Site {
   const Palette& palette;
   std::uint64_t thing;  // counts the things of the unit
 };
+
+enum class Cover : std::uint8_t { kNone, kGlass };
 
 // One thing of a furnished unit while it is made: its shapes, its draws, what it is made of.
 class Piece : public Shapes {
@@ -45,7 +48,7 @@ class Piece : public Shapes {
   void end_object() { set_object(-1); }
   // A sheet of paper, its print one's own with a chance of at least `min_own`: an object, unique
   // then.
-  void add_paper(const Box& sheet, double min_own);
+  void add_paper(const Box& sheet, double min_own, Cover cover = Cover::kNone);
   // A frame of this width around a box, as deep as the box.
   void add_frame(const Box& around, float width_m, const Material& material);
 

@@ -72,7 +72,11 @@ enum class Filling {
   kCabinet,
   kBin,
   kPlant,
-  kChair
+  kChair,
+  kCoatRack,
+  kLeaflets,
+  kLowShelf,
+  kCrates
 };
 
 struct FillingSize {
@@ -82,19 +86,17 @@ struct FillingSize {
 };
 
 // The more often in the list, the more often on the wall.
-constexpr std::array<FillingSize, 13> kFillings = {{{Filling::kBoard, 1.18F, 0.03F},
-                                                    {Filling::kPoster, 0.64F, 0.03F},
-                                                    {Filling::kSwitch, 0.10F, 0.02F},
-                                                    {Filling::kCabinet, 0.92F, 0.36F},
-                                                    {Filling::kExtinguisher, 0.22F, 0.19F},
-                                                    {Filling::kTwoPosters, 1.40F, 0.03F},
-                                                    {Filling::kBoard, 1.18F, 0.03F},
-                                                    {Filling::kPoster, 0.64F, 0.03F},
-                                                    {Filling::kRadiator, 1.20F, 0.13F},
-                                                    {Filling::kBin, 0.40F, 0.40F},
-                                                    {Filling::kPlant, 0.60F, 0.60F},
-                                                    {Filling::kChair, 0.60F, 0.60F},
-                                                    {Filling::kChair, 0.60F, 0.60F}}};
+constexpr std::array<FillingSize, 20> kFillings = {
+    {{Filling::kBoard, 1.18F, 0.03F},        {Filling::kPoster, 0.64F, 0.03F},
+     {Filling::kSwitch, 0.10F, 0.02F},       {Filling::kCabinet, 0.92F, 0.36F},
+     {Filling::kExtinguisher, 0.22F, 0.19F}, {Filling::kTwoPosters, 1.40F, 0.03F},
+     {Filling::kBoard, 1.18F, 0.03F},        {Filling::kPoster, 0.64F, 0.03F},
+     {Filling::kRadiator, 1.20F, 0.13F},     {Filling::kBin, 0.40F, 0.40F},
+     {Filling::kPlant, 0.60F, 0.60F},        {Filling::kChair, 0.60F, 0.60F},
+     {Filling::kChair, 0.60F, 0.60F},        {Filling::kCoatRack, 1.00F, 0.25F},
+     {Filling::kLeaflets, 0.74F, 0.05F},     {Filling::kLowShelf, 0.90F, 0.31F},
+     {Filling::kCrates, 0.52F, 0.39F},       {Filling::kLeaflets, 0.74F, 0.05F},
+     {Filling::kCoatRack, 1.00F, 0.25F},     {Filling::kLowShelf, 0.90F, 0.31F}}};
 
 void add_filling(Furnisher& furnisher, Filling filling, const Place& place) {
   const auto spot = [&](float out_m) { return spot_before(place.wall, place.along_m, out_m); };
@@ -120,6 +122,14 @@ void add_filling(Furnisher& furnisher, Filling filling, const Place& place) {
       return furnisher.add_plant(spot(0.30F));
     case Filling::kChair:
       return furnisher.add_chair(spot(0.32F));
+    case Filling::kCoatRack:
+      return furnisher.add_coat_rack(place);
+    case Filling::kLeaflets:
+      return furnisher.add_leaflets(place);
+    case Filling::kLowShelf:
+      return furnisher.add_low_shelf(place);
+    case Filling::kCrates:
+      return furnisher.add_crates(place);
   }
 }
 
@@ -194,7 +204,7 @@ std::vector<Eigen::Vector2f> Dresser::add_bays(Use use, float pitch_m, Gap& gap)
 
 // Piece by piece.
 void Dresser::fill_long_gap(Gap gap) {
-  constexpr float kPiece_m = 2.2F;
+  constexpr float kPiece_m = 1.6F;
   const float to_m = gap.to_m;
   const float rest_m = to_m - gap.from_m;
   const int num_pieces = std::max(1, static_cast<int>(rest_m / kPiece_m));

@@ -5,6 +5,7 @@
 #include <span>
 
 #include <samewhere/geometry/camera.hpp>
+#include <samewhere/twin/noise.hpp>
 #include <samewhere/twin/renderer.hpp>
 #include <samewhere/twin/texture.hpp>
 
@@ -102,6 +103,65 @@ void Renderer::shade_run(const Eye& eye, MovingThings& moving, const Run& run, V
   }
 }
 
+// The radiance of what a ray meets of the building, by the mean colour of its surface.
+Colour Renderer::without_texture(const Ray& ray, const Hit& hit) const {
+  const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hit.rectangle)];
+  const Colour light =
+      is_emitting(r.material)
+          ? Colour::Constant(r.material.radiance)
+          : light_.at(hit.rectangle, r.right_up_m(ray.origin + hit.reach * ray.direction));
+  return mean_reflectance(r.material) * light;
+}
+
+// What glass, varnish or polish mirrors where a ray meets it (Schlick, An Inexpensive BRDF Model
+// for Physically based Rendering, 1994). No surface is quite flat: its normal wavers.
+Colour Renderer::mirrored(const Ray& ray, const Hit& hit) const {
+  constexpr float kStraightOn = 0.04F;  // of varnish and glass
+  constexpr float kWave_m = 0.09F;
+  constexpr float kWaver = 0.02F;
+  constexpr float kOffSurface_m = 1e-3F;
+  constexpr float kBrightestMirrored = 5.0F;  // what is not quite smooth leaves of a lamp
+  const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hit.rectangle)];
+  const Eigen::Vector3f point = ray.origin + hit.reach * ray.direction;
+  const Eigen::Vector2f wave = r.right_up_m(point) / kWave_m;
+  const std::uint32_t seed = r.material.wear_seed;
+  const Eigen::Vector3f slope = value_noise(wave.x(), wave.y(), seed) * r.right +
+                                value_noise(wave.x(), wave.y(), seed + 1) * r.up;
+  const Eigen::Vector3f normal = (r.normal() + kWaver * slope).normalized();
+  const Eigen::Vector3f direction = ray.direction.normalized();
+  const float towards = direction.dot(normal);
+  const float aslant = 1.0F - std::min(std::abs(towards), 1.0F);
+  const float share =
+      kStraightOn + (1.0F - kStraightOn) * aslant * aslant * aslant * aslant * aslant;
+  const Ray back{point + kOffSurface_m * r.normal(), direction - 2.0F * towards * normal};
+  const auto seen = rays_.first_hit(back);
+  if (!seen) return Colour::Zero();
+  return std::min(r.material.gloss * share, 1.0F) *
+         without_texture(back, *seen).min(kBrightestMirrored);
+}
+
+// Adds what the surface mirrors: it moves over the surface as the eye moves. Computed for some
+// pixels and interpolated between them.
+void Renderer::mirror_in_run(const Eye& eye, const Run& run, View& view) const {
+  constexpr std::size_t kStep = 4;
+  const auto mirrored_at = [&](std::size_t i) {
+    return mirrored({eye.position, run.directions[i]}, run.hits[i]);
+  };
+  auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
+  const std::size_t last = run.hits.size() - 1;
+  Colour here = mirrored_at(0);
+  for (std::size_t first = 0; first <= last; first += kStep) {
+    const std::size_t next = std::min(first + kStep, last);
+    const Colour there = mirrored_at(next);
+    for (std::size_t i = first; i < first + kStep && i <= last; ++i) {
+      const float ratio = static_cast<float>(i - first) / static_cast<float>(kStep);
+      const Colour between = here + ratio * (there - here);
+      radiance[i] += cv::Vec3f(between[0], between[1], between[2]);
+    }
+    here = there;
+  }
+}
+
 // What things that move keep from the surfaces close to them changes slowly over the picture: it is
 // computed for some pixels and interpolated.
 void Renderer::darken_run(const Eye& eye, const MovingThings& moving, const Run& run,
@@ -147,6 +207,10 @@ void Renderer::render_row(const Eye& eye, MovingThings& moving, int y, View& vie
                   .directions = std::span(directions).subspan(first, end - first),
                   .hits = std::span(hits).subspan(first, end - first)};
     shade_run(eye, moving, run, view);
+    if (seen < num_at_rest &&
+        building_.rectangles[static_cast<std::size_t>(seen)].material.gloss > 0.0F) {
+      mirror_in_run(eye, run, view);
+    }
     if (!moving.is_empty() && seen < num_at_rest) darken_run(eye, moving, run, view);
   }
 }
@@ -235,11 +299,7 @@ float Renderer::mean_radiance(const core::Rigid3& world_from_camera) const {
   Colour sum = Colour::Zero();
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (hits[i].rectangle < 0) continue;
-    const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hits[i].rectangle)];
-    const Eigen::Vector2f right_up_m = r.right_up_m(position + hits[i].reach * directions[i]);
-    const Colour light = is_emitting(r.material) ? Colour::Constant(r.material.radiance)
-                                                 : light_.at(hits[i].rectangle, right_up_m);
-    sum += (mean_reflectance(r.material) * light).min(kBrightest);
+    sum += without_texture({position, directions[i]}, hits[i]).min(kBrightest);
   }
   return sum.mean() / static_cast<float>(hits.size());
 }

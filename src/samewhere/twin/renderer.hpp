@@ -49,6 +49,9 @@ class Renderer {
 
   void render_row(const Eye& eye, MovingThings& moving, int y, View& view) const;
   void shade_run(const Eye& eye, MovingThings& moving, const Run& run, View& view) const;
+  void mirror_in_run(const Eye& eye, const Run& run, View& view) const;
+  Colour mirrored(const Ray& ray, const Hit& hit) const;
+  Colour without_texture(const Ray& ray, const Hit& hit) const;
   void darken_run(const Eye& eye, const MovingThings& moving, const Run& run, View& view) const;
   void smooth_edges(const Eye& eye, const MovingThings& moving, View& view) const;
   cv::Vec3f smooth_pixel(const Eye& eye, const MovingThings& moving, const View& view,

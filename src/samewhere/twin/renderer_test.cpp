@@ -66,7 +66,8 @@ TEST(Renderer, EveryPixelSeesWhatASingleRayMeets) {
       EXPECT_NEAR(view.depth_m.at<float>(y, x), hit->reach, 1e-4F * hit->reach);
       const Eigen::Vector3f normal =
           building.rectangles[static_cast<std::size_t>(hit->rectangle)].normal();
-      EXPECT_NEAR(view.incidence.at<float>(y, x), -normal.dot(direction.normalized()), 1e-4F);
+      EXPECT_NEAR(view.incidence.at<float>(y, x), -normal.dot(direction.normalized()), 1e-4F)
+          << "surface " << hit->rectangle << " at " << x << ", " << y;
       --num_seen;
     }
   }
@@ -140,6 +141,27 @@ TEST(Renderer, WhatMovesIsLitByTheRoomAndDarkensTheFloorBelowIt) {
   const View empty = renderer.render(pose);
   EXPECT_LT(mean_of(view.radiance.at<cv::Vec3f>(floor_px, 80)),
             0.85F * mean_of(empty.radiance.at<cv::Vec3f>(floor_px, 80)));
+}
+
+TEST(Renderer, APolishedFloorMirrorsTheLampWhereTheEyeHasIt) {
+  TestRoom room(Colour::Constant(0.3F));
+  const RayScene rays(room.building.rectangles);
+  // the middle of the picture, seen from a place; from x = -2.5 m it is the lamp's mirror image
+  const auto middle_from = [&](double x_m) {
+    core::Rigid3 pose = looking({x_m, 0.0, 1.0}, 0.0);
+    const double down_rad = std::atan2(1.0 + TestRoom::kLamp_m, 2.5);
+    pose.rotation *= Eigen::Quaterniond(Eigen::AngleAxisd(-down_rad, Eigen::Vector3d::UnitX()));
+    const Renderer renderer(room.building, rays, kSmallCamera);
+    return mean_of(renderer.render(pose).radiance.at<cv::Vec3f>(60, 80));
+  };
+  const float matt = middle_from(-2.5);
+  const float matt_from_nearer = middle_from(-1.5);
+  room.building.rectangles[TestRoom::kFloor].material.gloss = 1.0F;
+  const float lamp = middle_from(-2.5) - matt;
+  const float ceiling = middle_from(-1.5) - matt_from_nearer;
+  EXPECT_GT(lamp, 0.1F);
+  EXPECT_GT(ceiling, 0.0F);
+  EXPECT_LT(ceiling, 0.2F * lamp);
 }
 
 TEST(Renderer, TheMeterReadsTheMeanOfThePicture) {

@@ -57,6 +57,7 @@ struct Material {
   float own_ratio = 0.0F;
   int number = 0;               // of the room, the floor, the pictogram, the kind of cloth
   float radiance = 0.0F;        // of emitting finishes
+  float gloss = 0.0F;           // share of what a polished surface would mirror; 0: matt
   std::uint32_t blot_seed = 0;  // a big stain or scratch in the middle; 0: none
 };
 
