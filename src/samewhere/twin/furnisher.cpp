@@ -43,6 +43,18 @@ Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plan
   return piece.running(Finish::kWall, palette.wall, palette.dado, plane);
 }
 
+// Another design is another pattern: look-alikes with unlike ceilings do not count as alike.
+Material tiled_ceiling(const Piece& piece) {
+  constexpr int kPlastered = 5;
+  const Palette& palette = piece.palette();
+  const bool is_plastered = palette.ceiling_kind == kPlastered;
+  Material material = piece.running(is_plastered ? Finish::kPlaster : Finish::kCeiling,
+                                    palette.ceiling, paints::kWhite, kCeilingPlane);
+  material.pattern_seed = scramble(material.pattern_seed + palette.ceiling_design);
+  material.number = palette.ceiling_kind;
+  return material;
+}
+
 // A stain or deep scratch: a piece of the wall a hair in front of it.
 void add_blot(Piece& piece, const Box& span, Material material) {
   constexpr float kHair_m = 6e-4F;
@@ -133,18 +145,17 @@ void Furnisher::add_floor(const Eigen::Vector2f& low_m, const Eigen::Vector2f& h
 void Furnisher::add_ceiling(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, float z_m,
                             CeilingFinish finish) {
   Piece piece = piece_at(Stance{});
-  const Colour bar = paints::kWhite;
   const Colour& colour = palette_.ceiling;
   const auto material = [&] {
     switch (finish) {
       case CeilingFinish::kTiles:
-        return piece.running(Finish::kCeiling, colour, bar, kCeilingPlane);
+        return tiled_ceiling(piece);
       case CeilingFinish::kPlaster:
         return piece.running(Finish::kPlaster, colour, colour, kCeilingPlane);
       case CeilingFinish::kConcrete:
         return piece.running(Finish::kConcrete, 0.7F * colour, 0.5F * colour, kCeilingPlane);
     }
-    return piece.running(Finish::kCeiling, colour, bar, kCeilingPlane);
+    return tiled_ceiling(piece);
   }();
   piece.add_panel({.corner_m = {low_m.x(), high_m.y(), z_m},
                    .up = -Eigen::Vector3f::UnitY(),
@@ -155,14 +166,26 @@ void Furnisher::add_ceiling(const Eigen::Vector2f& low_m, const Eigen::Vector2f&
 void Furnisher::add_skirting(const Wall& wall, float from_along_m, float to_along_m) {
   Piece piece = piece_at(wall);
   const Material material = piece.made_of(Finish::kPaint, palette_.skirting);
-  piece.add_box({{from_along_m, 0.0F, 0.0F}, {to_along_m, 0.09F, 0.012F}}, {material, material});
+  piece.add_box({{from_along_m, 0.0F, 0.0F}, {to_along_m, palette_.skirting_m, 0.012F}},
+                {material, material});
 }
 
-void Furnisher::add_cable_duct(const Wall& wall) {
+void Furnisher::add_cornice(const Wall& wall, float width_m, float height_m) {
+  Piece piece = piece_at(wall);
+  const Material plaster = piece.made_of(Finish::kPlaster, palette_.ceiling);
+  const float top_m = wall.ceiling_m - wall.floor_m;
+  const float long_m = length_m(wall);
+  // where two walls meet, one of them is a hair lower
+  const bool is_along_x = std::abs(right_of(wall).x()) > 0.5F;
+  const float bottom_m = top_m - height_m - (is_along_x ? 0.0F : 0.002F);
+  piece.add_box({{0.0F, bottom_m, 0.0F}, {long_m, top_m, width_m}}, {plaster, plaster});
+}
+
+void Furnisher::add_cable_duct(const Wall& wall, float below_m) {
   Piece piece = piece_at(wall);
   const Colour grey = colour_of_srgb(0.80F, 0.80F, 0.78F);
   const Material material = piece.made_of(Finish::kPlastic, grey);
-  const float top_m = wall.ceiling_m - wall.floor_m - 0.17F;
+  const float top_m = wall.ceiling_m - wall.floor_m - below_m;
   piece.add_box({{0.0F, top_m - 0.05F, 0.0F}, {length_m(wall), top_m, 0.035F}},
                 {material, material});
 }
