@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -28,6 +29,20 @@ std::uint32_t plane_of(const Wall& wall) {
 constexpr std::uint32_t kFloorPlane = 2;
 constexpr std::uint32_t kCeilingPlane = 3;
 
+// Walls of bricks may be built or covered otherwise; paint need not change its colour half way up.
+Material stair_wall(const Piece& piece, std::uint32_t plane) {
+  constexpr std::array kFinishes = {Finish::kBrick, Finish::kWall, Finish::kPlaster,
+                                    Finish::kConcrete};
+  const Palette& palette = piece.palette();
+  Choices choices(palette.stair_design);
+  const Finish finish = choices.of(kFinishes);
+  const bool has_dado = choices.next(2) == 0;
+  Material material =
+      piece.running(finish, palette.wall, has_dado ? palette.dado : palette.wall, plane);
+  material.pattern_seed = scramble(material.pattern_seed + palette.stair_design);
+  return material;
+}
+
 Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plane) {
   const Palette& palette = piece.palette();
   switch (finish) {
@@ -38,7 +53,7 @@ Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plan
     case WallFinish::kConcrete:
       return piece.running(Finish::kConcrete, 0.8F * palette.floor, palette.joint, plane);
     case WallFinish::kBrick:
-      return piece.running(Finish::kBrick, palette.wall, palette.dado, plane);
+      return stair_wall(piece, plane);
   }
   return piece.running(Finish::kWall, palette.wall, palette.dado, plane);
 }
@@ -172,13 +187,14 @@ void Furnisher::add_skirting(const Wall& wall, float from_along_m, float to_alon
 
 void Furnisher::add_cornice(const Wall& wall, float width_m, float height_m) {
   Piece piece = piece_at(wall);
-  const Material plaster = piece.made_of(Finish::kPlaster, palette_.ceiling);
+  const Material white = piece.made_of(Finish::kPaint, palette_.ceiling);
   const float top_m = wall.ceiling_m - wall.floor_m;
   const float long_m = length_m(wall);
-  // where two walls meet, one of them is a hair lower
+  // where two walls meet, the faces of one are a hair beside those of the other
   const bool is_along_x = std::abs(right_of(wall).x()) > 0.5F;
-  const float bottom_m = top_m - height_m - (is_along_x ? 0.0F : 0.002F);
-  piece.add_box({{0.0F, bottom_m, 0.0F}, {long_m, top_m, width_m}}, {plaster, plaster});
+  const float hair_m = is_along_x ? 0.001F : 0.002F;
+  piece.add_box({{0.0F, top_m - height_m - hair_m, 0.0F}, {long_m, top_m + hair_m, width_m}},
+                {white, white});
 }
 
 void Furnisher::add_cable_duct(const Wall& wall, float below_m) {

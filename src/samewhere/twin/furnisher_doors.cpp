@@ -18,14 +18,14 @@ void add_handle(Piece& piece, int kind, float to_hinges, const Material& steel) 
   const float x_m = -0.38F * to_hinges;
   const Material hole = piece.made_of(Finish::kPlastic, paints::kBlack);
   if (kind == kBar) {
-    piece.add_bar({.from_m = {x_m, 0.75F, 0.062F},
-                   .to_m = {x_m, 1.35F, 0.062F},
+    piece.add_bar({.from_m = {x_m, 0.75F, 0.055F},
+                   .to_m = {x_m, 1.35F, 0.055F},
                    .radius_m = 0.013F,
                    .num_sides = 8,
                    .has_ends = true},
                   steel);
     for (const float y_m : {0.8F, 1.3F}) {
-      piece.add_box(centred({x_m, y_m}, {0.022F, 0.022F}, {kLeaf_m, 0.055F}), {steel, steel});
+      piece.add_box(centred({x_m, y_m}, {0.022F, 0.022F}, {kLeaf_m, 0.05F}), {steel, steel});
     }
     return;
   }

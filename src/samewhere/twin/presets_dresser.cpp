@@ -369,45 +369,55 @@ void Dresser::add_ceiling_things(const Space& space) {
   while (furnisher_.num_things() < end) furnisher_.skip_thing();
 }
 
-// Answers how many there are in a row.
-int Dresser::add_lamps(const Space& space) {
+Dresser::LampRow Dresser::add_lamps(const Space& space) {
   constexpr float kWide_m = 3.2F;
   const Course course(space);
-  const float pitch_m = ceiling_.pitch_m;
-  const int num_lamps = std::max(1, static_cast<int>(std::lround(course.length_m() / pitch_m)));
-  std::vector<float> rows = ceiling_.rows;
-  if (course.width_m() > kWide_m) rows = {0.25F, 0.75F};
   LampFitting lamp = ceiling_.lamp;
   if ((course.along == 0) == ceiling_.is_across) std::swap(lamp.size_m.x(), lamp.size_m.y());
+  const Eigen::Vector2f lamp_m(lamp.size_m[course.along], lamp.size_m[1 - course.along]);
+  std::vector<float> rows = ceiling_.rows;
+  if (course.width_m() > kWide_m) rows = {0.25F, 0.75F};
+  if (lamp_m.y() > 0.4F * course.width_m()) rows = {0.5F};
   // about as much light whatever the design
-  const float usual_m2 = 0.36F * pitch_m / 2.4F * (course.width_m() > kWide_m ? 2.0F : 1.0F);
+  const float usual_m2 =
+      0.36F * ceiling_.pitch_m / 2.4F * (course.width_m() > kWide_m ? 2.0F : 1.0F);
   const float own_m2 = lamp.size_m.prod() * static_cast<float>(rows.size());
-  lamp.brightness = std::clamp(lamp.brightness * usual_m2 / own_m2, 0.5F, 4.0F);
+  lamp.brightness = std::clamp(usual_m2 / own_m2, 0.5F, 4.0F);
+  const LampRow row_of_lamps = lamps_along(course.length_m(), lamp_m.x());
   for (const float row : rows) {
-    for (int i = 0; i < num_lamps; ++i) {
-      const float phase = num_lamps == 1 ? 0.5F : ceiling_.phase;
-      const float along_m =
-          (static_cast<float>(i) + phase) * course.length_m() / static_cast<float>(num_lamps);
-      furnisher_.add_ceiling_lamp(
-          course.at(clear_of_ends(along_m, lamp.size_m[course.along], course.length_m()),
-                    clear_of_ends(row * course.width_m(), lamp.size_m[1 - course.along],
-                                  course.width_m())),
-          lamp, space.ceiling_m);
+    const float across_m = clear_of_ends(row * course.width_m(), lamp_m.y(), course.width_m());
+    for (int i = 0; i < row_of_lamps.num_lamps; ++i) {
+      furnisher_.add_ceiling_lamp(course.at(row_of_lamps.middle_m(i), across_m), lamp,
+                                  space.ceiling_m);
     }
   }
-  return num_lamps;
+  return row_of_lamps;
 }
 
-// Between the lamps, in turns with smoke detectors.
-void Dresser::add_vents(const Space& space, int num_lamps) {
+// As near to the pitch as there is room for; what moves them leaves them clear of each other.
+Dresser::LampRow Dresser::lamps_along(float room_m, float lamp_m) const {
+  constexpr float kLeastGap_m = 0.15F;
+  const auto most = static_cast<int>(room_m / (lamp_m + kLeastGap_m));
+  const auto wanted = static_cast<int>(std::lround(room_m / ceiling_.pitch_m));
+  LampRow row{.num_lamps = std::max(1, std::min(wanted, most))};
+  row.step_m = room_m / static_cast<float>(row.num_lamps);
+  row.gap_m = row.step_m - lamp_m;
+  const float slack_m = std::max(0.0F, 0.5F * (row.gap_m - kLeastGap_m));
+  row.shift_m = row.num_lamps == 1
+                    ? 0.0F
+                    : std::clamp((ceiling_.phase - 0.5F) * row.step_m, -slack_m, slack_m);
+  return row;
+}
+
+// Between the lamps, where there is room, in turns with smoke detectors.
+void Dresser::add_vents(const Space& space, const LampRow& lamps) {
   constexpr float kVent_m = 0.5F;
   const Course course(space);
-  for (int i = 1; i < num_lamps; ++i) {
-    const float between = static_cast<float>(i) + ceiling_.phase - 0.5F;
-    const float along_m = between * course.length_m() / static_cast<float>(num_lamps);
+  if (lamps.gap_m < kVent_m + 0.1F) return;
+  for (int i = 1; i < lamps.num_lamps; ++i) {
+    const float along_m = lamps.middle_m(i) - 0.5F * lamps.step_m;
     const auto at = [&](float row) {
-      return course.at(clear_of_ends(along_m, kVent_m, course.length_m()),
-                       clear_of_ends(row * course.width_m(), kVent_m, course.width_m()));
+      return course.at(along_m, clear_of_ends(row * course.width_m(), kVent_m, course.width_m()));
     };
     if (i % ceiling_.vent_step != 1 % ceiling_.vent_step) {
       furnisher_.add_smoke_detector(at(ceiling_.detector_row), space.ceiling_m);

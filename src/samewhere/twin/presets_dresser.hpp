@@ -87,6 +87,15 @@ class Dresser {
     float detector_row = 0.5F;
     std::array<float, 2> signs_m = {1.3F, 1.3F};  // from either end; 0: none there
   };
+  // Lamps one behind the other.
+  struct LampRow {
+    int num_lamps = 1;
+    float step_m = 0.0F;   // from middle to middle
+    float gap_m = 0.0F;    // between two
+    float shift_m = 0.0F;  // of all of them
+
+    float middle_m(int lamp) const { return (static_cast<float>(lamp) + 0.5F) * step_m + shift_m; }
+  };
   // How walls meet the ceiling.
   struct EdgeDesign {
     Eigen::Vector2f cornice_m = Eigen::Vector2f::Zero();  // along ceiling and wall; 0: none
@@ -105,8 +114,9 @@ class Dresser {
   void fill_gap(const Gap& gap);
   void add_edge(const Wall& wall, Use use, const Dress& dress);
   void add_ceiling_things(const Space& space);
-  int add_lamps(const Space& space);
-  void add_vents(const Space& space, int num_lamps);
+  LampRow add_lamps(const Space& space);
+  LampRow lamps_along(float room_m, float lamp_m) const;
+  void add_vents(const Space& space, const LampRow& lamps);
   void add_exit_signs(const Space& space);
 
   const Plan& plan_;

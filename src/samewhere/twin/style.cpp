@@ -90,6 +90,8 @@ void Palette::choose_fittings(Draws& draws) {
   constexpr std::array kSkirtings_m = {0.09F, 0.06F, 0.12F, 0.16F};
   skirting_m = Choices(draws.design()).of(kSkirtings_m);
 
+  stair_design = draws.design();
+
   Choices doors(draws.design());
   constexpr std::array kFrames_m = {0.07F, 0.04F, 0.055F};
   constexpr std::array kPlates_m = {1.55F, 1.40F, 1.72F};

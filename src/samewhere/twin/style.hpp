@@ -109,7 +109,8 @@ struct Palette {
   // Of tiled ceilings: which kind, and where the grid begins.
   int ceiling_kind = 0;
   std::uint32_t ceiling_design = 0;
-  float skirting_m = 0.09F;  // height
+  std::uint32_t stair_design = 0;  // of walls that are bricks by default
+  float skirting_m = 0.09F;        // height
   DoorDesign door;
   WindowDesign window;
 
