@@ -205,25 +205,26 @@ float through_slats(float x_m, float slat_m, const Grain& grain, float footprint
   return 1.0F - visible_share(slat_m, footprint_m) * (0.45F * phase + 0.2F * bent);
 }
 
-// What hangs before a window.
+// What hangs before a window: `number` says what and, in fives, how broad its slats are.
 float dressing(const Material& m, const TexturePoint& p, const Grain& grain) {
-  enum { kBroad, kFine, kUpright, kCurtain, kShade };
+  enum { kBroad, kFine, kUpright, kCurtain, kShade, kNumKinds };
+  const float breadth = 0.7F + 0.2F * static_cast<float>(m.number / kNumKinds);
   const float cord = on_line(to_grid_line_m(p.u_m + 0.2F, 0.55F), 0.004F, p.footprint_m);
-  switch (m.number) {
+  switch (m.number % kNumKinds) {
     case kFine:
-      return through_slats(p.v_m, 0.025F, grain, p.footprint_m) * (1.0F - 0.5F * cord);
+      return through_slats(p.v_m, 0.025F * breadth, grain, p.footprint_m) * (1.0F - 0.5F * cord);
     case kUpright:
-      return through_slats(p.u_m, 0.09F, grain, p.footprint_m);
+      return through_slats(p.u_m, 0.09F * breadth, grain, p.footprint_m);
     case kCurtain: {
       const TexturePoint stretched{p.u_m, 0.06F * p.v_m, p.footprint_m};
-      const float folds =
-          octave_noise(stretched, {.wavelength_m = 0.14F, .count = 3, .gain = 0.6F}, grain + 3);
+      const float folds = octave_noise(
+          stretched, {.wavelength_m = 0.14F * breadth, .count = 3, .gain = 0.6F}, grain + 3);
       return 0.7F * (1.0F + 0.3F * folds);
     }
     case kShade:
       return 0.85F + 0.03F * mosaic(p, 0.01F, 0.01F, grain + 4);
     default:
-      return through_slats(p.v_m, 0.05F, grain, p.footprint_m) * (1.0F - 0.5F * cord);
+      return through_slats(p.v_m, 0.05F * breadth, grain, p.footprint_m) * (1.0F - 0.5F * cord);
   }
 }
 

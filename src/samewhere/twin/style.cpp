@@ -39,6 +39,7 @@ constexpr std::uint64_t kPalette = ~0ULL;
 
 constexpr int kNumCeilings = 6;
 constexpr int kNumDressings = 5;
+constexpr int kNumPitches = 4;  // of each
 
 Colour rgb(float red, float green, float blue) { return colour_of_srgb(red, green, blue); }
 
@@ -105,7 +106,7 @@ void Palette::choose_fittings(Draws& draws) {
   const std::array<Eigen::Vector2f, 4> panes_m = {
       {{1.4F, 1.2F}, {1.2F, 1.3F}, {1.4F, 0.9F}, {1.05F, 1.1F}}};
   window.pane_m = windows.of(panes_m);
-  window.dressing = windows.next(kNumDressings);
+  window.dressing = windows.next(kNumDressings * kNumPitches);
   window.has_sill = windows.next(3) != 0;
   window.num_bars = windows.next(3);
 }
