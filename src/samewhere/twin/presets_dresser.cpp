@@ -363,8 +363,9 @@ void Dresser::add_ceiling_things(const Space& space) {
   constexpr std::uint64_t kAtLeast = 24;
   const std::uint64_t end = furnisher_.num_things() + kAtLeast +
                             static_cast<std::uint64_t>(kPerMetre * Course(space).length_m());
-  add_vents(space, add_lamps(space));
-  add_exit_signs(space);
+  const LampRow lamps = add_lamps(space);
+  add_vents(space, lamps);
+  add_exit_signs(space, lamps);
   core::require(furnisher_.num_things() <= end, "a ceiling has room for its things");
   while (furnisher_.num_things() < end) furnisher_.skip_thing();
 }
@@ -427,20 +428,33 @@ void Dresser::add_vents(const Space& space, const LampRow& lamps) {
   }
 }
 
-void Dresser::add_exit_signs(const Space& space) {
+// Not right below a lamp.
+float Dresser::LampRow::beside_lamp_m(float wanted_m) const {
+  constexpr float kBeside_m = 0.3F;
+  const auto nearest = static_cast<int>(std::lround((wanted_m - shift_m) / step_m - 0.5F));
+  const float lamp_m = middle_m(std::clamp(nearest, 0, num_lamps - 1));
+  const float least_m = 0.5F * (step_m - gap_m) + kBeside_m;
+  if (std::abs(wanted_m - lamp_m) >= least_m) return wanted_m;
+  const float low_m = lamp_m - least_m;
+  const float high_m = lamp_m + least_m;
+  const float room_m = step_m * static_cast<float>(num_lamps);
+  const bool has_room_above = high_m < room_m - kBeside_m;
+  const bool is_below = (wanted_m < lamp_m && low_m > kBeside_m) || !has_room_above;
+  return is_below ? low_m : high_m;
+}
+
+void Dresser::add_exit_signs(const Space& space, const LampRow& lamps) {
   constexpr float kCorridor_m = 6.0F;
   const Course course(space);
   if (course.length_m() < kCorridor_m) return;
   const float heading_rad = course.along == 0 ? 0.0F : 1.5707963F;
-  const float middle_m = 0.5F * course.width_m();
+  const auto add_at = [&](float along_m) {
+    furnisher_.add_exit_sign(course.at(lamps.beside_lamp_m(along_m), 0.5F * course.width_m()),
+                             heading_rad, space.ceiling_m);
+  };
   const auto [first_m, last_m] = ceiling_.signs_m;
-  if (first_m > 0.0F) {
-    furnisher_.add_exit_sign(course.at(first_m, middle_m), heading_rad, space.ceiling_m);
-  }
-  if (last_m > 0.0F) {
-    furnisher_.add_exit_sign(course.at(course.length_m() - last_m, middle_m), heading_rad,
-                             space.ceiling_m);
-  }
+  if (first_m > 0.0F) add_at(first_m);
+  if (last_m > 0.0F) add_at(course.length_m() - last_m);
 }
 
 Wall Dresser::wall_of(int space, int side) const {

@@ -94,6 +94,7 @@ class Dresser {
     float gap_m = 0.0F;    // between two
     float shift_m = 0.0F;  // of all of them
 
+    float beside_lamp_m(float wanted_m) const;
     float middle_m(int lamp) const { return (static_cast<float>(lamp) + 0.5F) * step_m + shift_m; }
   };
   // How walls meet the ceiling.
@@ -117,7 +118,7 @@ class Dresser {
   LampRow add_lamps(const Space& space);
   LampRow lamps_along(float room_m, float lamp_m) const;
   void add_vents(const Space& space, const LampRow& lamps);
-  void add_exit_signs(const Space& space);
+  void add_exit_signs(const Space& space, const LampRow& lamps);
 
   const Plan& plan_;
   int unit_;
