@@ -208,7 +208,8 @@ float through_slats(float x_m, float slat_m, const Grain& grain, float footprint
 // What hangs before a window: `number` says what and, in fives, how broad its slats are.
 float dressing(const Material& m, const TexturePoint& p, const Grain& grain) {
   enum { kBroad, kFine, kUpright, kCurtain, kShade, kNumKinds };
-  const float breadth = 0.7F + 0.2F * static_cast<float>(m.number / kNumKinds);
+  const int step = m.number / kNumKinds;
+  const float breadth = 0.7F + 0.2F * static_cast<float>(step);
   const float cord = on_line(to_grid_line_m(p.u_m + 0.2F, 0.55F), 0.004F, p.footprint_m);
   switch (m.number % kNumKinds) {
     case kFine:
