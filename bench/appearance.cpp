@@ -294,9 +294,7 @@ std::function<void()> set_up(CLI::App& app) {
       "the inliers of 1000 ORB features (ratio 0.8) under one fundamental matrix, by baseline "
       "over\n"
       "median depth and by angle between the views; the same apart for baselines that run aside "
-      "and
-      "
-      "forward. '!' marks what is further than a factor of two from every recorded source.");
+      "and forward. '!' marks what is further than a factor of two from every recorded source.");
   app.add_option("SOURCE", options->sources, "recordings with depth and poses, or twin:PRESET")
       ->required();
   app.add_option("--width", options->width_px,

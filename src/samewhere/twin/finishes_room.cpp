@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include <samewhere/twin/finishes.hpp>
@@ -42,6 +43,20 @@ Colour dado_paint(const Material& m, const TexturePoint& p) {
   const float line = inside(p.v_m, kDado_m, kDado_m + kLine_m, p.footprint_m);
   return mixed(m.colour, m.second, dado) * (1.0F - 0.4F * line);
 }
+
+// Boards in a grid of bars.
+struct CeilingTile {
+  float wide_m, long_m, half_bar_m;
+  float bar;  // colour of the bars over that of their paint
+  float hole_cell_m;
+  float holes, cracks;  // light that they swallow
+};
+constexpr std::array<CeilingTile, 5> kCeilingTiles = {
+    {{0.6F, 0.6F, 0.012F, 1.0F, 0.045F, 0.6F, 0.65F},
+     {0.3F, 1.5F, 0.004F, 0.6F, 0.02F, 0.4F, 0.0F},
+     {0.6F, 1.2F, 0.012F, 1.0F, 0.045F, 0.0F, 0.25F},
+     {1.8F, 0.1F, 0.009F, 0.25F, 0.045F, 0.05F, 0.0F},
+     {0.5F, 0.5F, 0.006F, 0.5F, 0.03F, 0.65F, 0.0F}}};
 
 // Clouds of dirt a metre across.
 float clouds(const TexturePoint& p, std::uint32_t wear_seed, float strength) {
@@ -204,24 +219,31 @@ Colour planks(const Material& m, const TexturePoint& p) {
          ((1.0F + clouds(p, m.wear_seed, 0.05F)) * marked(p, m, 0.35F));
 }
 
-Colour ceiling_tiles(const Material& m, const TexturePoint& p) {
-  constexpr float kTile_m = 0.6F;
-  constexpr float kHalfBar_m = 0.012F;
+// Which one: `number`.
+Colour ceiling_tiles(const Material& m, const TexturePoint& in_unit) {
+  const CeilingTile& kind =
+      kCeilingTiles[static_cast<std::size_t>(m.number) % kCeilingTiles.size()];
   const Grain grain = grain_of(m);
-  const int tile_u = floor_int(p.u_m / kTile_m);
-  const int tile_v = floor_int(p.v_m / kTile_m);
+  // where the grid begins
+  const TexturePoint p{in_unit.u_m + kind.wide_m * unit_float(scramble(m.pattern_seed)),
+                       in_unit.v_m + kind.long_m * unit_float(scramble(m.pattern_seed + 1)),
+                       in_unit.footprint_m};
+  const int tile_u = floor_int(p.u_m / kind.wide_m);
+  const int tile_v = floor_int(p.v_m / kind.long_m);
   const float tile = 0.03F * grid_value(tile_u, tile_v, grain);
-  const float to_bar_m = std::min(to_grid_line_m(p.u_m, kTile_m), to_grid_line_m(p.v_m, kTile_m));
-  const float bar = on_line(to_bar_m, kHalfBar_m, p.footprint_m);
-  const float shadow_line = on_line(std::abs(to_bar_m - kHalfBar_m), 0.004F, p.footprint_m);
-  const float holes = 0.6F * spots(p, {.cell_m = 0.045F, .density = 0.7F}, grain + 1) +
-                      0.65F * scratches(p, {.cell_m = 0.09F, .density = 0.7F}, grain + 2) +
-                      0.12F * spots(p, {.cell_m = 0.43F, .density = 0.25F}, m.wear_seed);
+  const float to_bar_m =
+      std::min(to_grid_line_m(p.u_m, kind.wide_m), to_grid_line_m(p.v_m, kind.long_m));
+  const float bar = on_line(to_bar_m, kind.half_bar_m, p.footprint_m);
+  const float shadow_line = on_line(std::abs(to_bar_m - kind.half_bar_m), 0.004F, p.footprint_m);
+  const float holes =
+      kind.holes * spots(p, {.cell_m = kind.hole_cell_m, .density = 0.7F}, grain + 1) +
+      kind.cracks * scratches(p, {.cell_m = 0.09F, .density = 0.7F}, grain + 2) +
+      0.12F * spots(p, {.cell_m = 0.43F, .density = 0.25F}, m.wear_seed);
   const float fibres =
       0.04F * octave_noise(p, {.wavelength_m = 0.03F, .count = 3, .gain = 0.7F}, grain + 4);
   const Colour board = m.colour * ((1.0F + tile + fibres + clouds(p, m.wear_seed, 0.03F)) *
                                    (1.0F - std::min(holes, 0.7F)));
-  return mixed(board, m.second, bar) * (1.0F - 0.35F * shadow_line);
+  return mixed(board, kind.bar * m.second, bar) * (1.0F - 0.35F * shadow_line);
 }
 
 }  // namespace samewhere::twin

@@ -162,31 +162,83 @@ Colour books(const Rectangle& r, const TexturePoint& p) {
   return mixed(printed, Colour::Constant(0.01F), std::max(above, 0.8F * gap)) * marked(p, m, 0.3F);
 }
 
+// Which face: `number`, as LampFace.
 Colour lamp(const Rectangle& r, const TexturePoint& p) {
   constexpr float kFrame_m = 0.025F;
   constexpr float kRib_m = 0.1F;
-  const float u = std::min(p.u_m, r.size_m.x() - p.u_m);
-  const float v = std::min(p.v_m, r.size_m.y() - p.v_m);
+  constexpr float kHousing = 0.05F;  // of the light that the lamp gives
+  enum { kRibbed, kOpal, kLouvre, kTubes, kRound };
+  const Eigen::Vector2f& size_m = r.size_m;
+  const int face = r.material.number;
+  if (face == kRound) {
+    const Eigen::Vector2f from_middle_m(p.u_m - 0.5F * size_m.x(), p.v_m - 0.5F * size_m.y());
+    const float out_m = from_middle_m.norm() - 0.42F * size_m.minCoeff();
+    return r.material.colour * lerp(1.0F, kHousing, beyond(out_m, p.footprint_m));
+  }
+  const float u = std::min(p.u_m, size_m.x() - p.u_m);
+  const float v = std::min(p.v_m, size_m.y() - p.v_m);
   const float frame = 1.0F - beyond(std::min(u, v) - kFrame_m, p.footprint_m);
-  const float along_m = r.size_m.x() > r.size_m.y() ? u : v;
-  const float rib = on_line(to_grid_line_m(along_m, kRib_m), 0.004F, p.footprint_m);
-  return r.material.colour * ((1.0F - 0.75F * frame) * (1.0F - 0.35F * rib));
+  const bool is_along_u = size_m.x() > size_m.y();
+  const float along_m = is_along_u ? u : v;
+  const float across_m = is_along_u ? v : u;
+  float shade = 1.0F;
+  if (face == kRibbed || face == kLouvre) {
+    shade -= 0.35F * on_line(to_grid_line_m(along_m, kRib_m), 0.004F, p.footprint_m);
+  }
+  if (face == kLouvre) {
+    shade -= 0.35F * on_line(to_grid_line_m(across_m, kRib_m), 0.006F, p.footprint_m);
+  }
+  if (face == kTubes) {
+    const float from_tube_m = std::abs(across_m - 0.25F * size_m.minCoeff());
+    shade = lerp(kHousing, 1.0F, on_line(from_tube_m, 0.1F * size_m.minCoeff(), p.footprint_m));
+  }
+  return r.material.colour * ((1.0F - 0.75F * frame) * shade);
 }
 
+namespace {
+
+// Light through slats that hang side by side, turned a little, each by itself.
+float through_slats(float x_m, float slat_m, const Grain& grain, float footprint_m) {
+  const float slats = x_m / slat_m;
+  const float phase = slats - static_cast<float>(floor_int(slats));
+  const float bent = unit_float(hash_cell(floor_int(slats), 0, grain));
+  return 1.0F - visible_share(slat_m, footprint_m) * (0.45F * phase + 0.2F * bent);
+}
+
+// What hangs before a window: `number` says what and, in fives, how broad its slats are.
+float dressing(const Material& m, const TexturePoint& p, const Grain& grain) {
+  enum { kBroad, kFine, kUpright, kCurtain, kShade, kNumKinds };
+  const int step = m.number / kNumKinds;
+  const float breadth = 0.7F + 0.2F * static_cast<float>(step);
+  const float cord = on_line(to_grid_line_m(p.u_m + 0.2F, 0.55F), 0.004F, p.footprint_m);
+  switch (m.number % kNumKinds) {
+    case kFine:
+      return through_slats(p.v_m, 0.025F * breadth, grain, p.footprint_m) * (1.0F - 0.5F * cord);
+    case kUpright:
+      return through_slats(p.u_m, 0.09F * breadth, grain, p.footprint_m);
+    case kCurtain: {
+      const TexturePoint stretched{p.u_m, 0.06F * p.v_m, p.footprint_m};
+      const float folds = octave_noise(
+          stretched, {.wavelength_m = 0.14F * breadth, .count = 3, .gain = 0.6F}, grain + 3);
+      return 0.7F * (1.0F + 0.3F * folds);
+    }
+    case kShade:
+      return 0.85F + 0.03F * mosaic(p, 0.01F, 0.01F, grain + 4);
+    default:
+      return through_slats(p.v_m, 0.05F * breadth, grain, p.footprint_m) * (1.0F - 0.5F * cord);
+  }
+}
+
+}  // namespace
+
+// Which dressing: `number`.
 Colour blinds(const Rectangle& r, const TexturePoint& p) {
-  constexpr float kSlat_m = 0.05F;
   const Material& m = r.material;
   const Grain grain = grain_of(m);
-  const float slats = p.v_m / kSlat_m;
-  const float phase = slats - static_cast<float>(floor_int(slats));
-  const float share = visible_share(kSlat_m, p.footprint_m);
-  const float bent = unit_float(hash_cell(floor_int(slats), 0, grain));
-  const float slat = 1.0F - share * (0.45F * phase + 0.2F * bent);
-  const float cord = on_line(to_grid_line_m(p.u_m + 0.2F, 0.55F), 0.004F, p.footprint_m);
   const float outside =
       0.25F * octave_noise(p, {.wavelength_m = 0.6F, .count = 3, .gain = 0.6F}, grain);
   const float sky = lerp(0.6F, 1.0F, clamp01(p.v_m / r.size_m.y()));
-  return m.colour * (slat * sky * (1.0F + outside) * (1.0F - 0.5F * cord));
+  return m.colour * (dressing(m, p, grain) * sky * (1.0F + outside));
 }
 
 // Sky over houses over trees, a little out of focus.

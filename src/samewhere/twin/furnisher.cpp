@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -28,6 +29,20 @@ std::uint32_t plane_of(const Wall& wall) {
 constexpr std::uint32_t kFloorPlane = 2;
 constexpr std::uint32_t kCeilingPlane = 3;
 
+// Walls of bricks may be built or covered otherwise; paint need not change its colour half way up.
+Material stair_wall(const Piece& piece, std::uint32_t plane) {
+  constexpr std::array kFinishes = {Finish::kBrick, Finish::kWall, Finish::kPlaster,
+                                    Finish::kConcrete};
+  const Palette& palette = piece.palette();
+  Choices choices(palette.stair_design);
+  const Finish finish = choices.of(kFinishes);
+  const bool has_dado = choices.next(2) == 0;
+  Material material =
+      piece.running(finish, palette.wall, has_dado ? palette.dado : palette.wall, plane);
+  material.pattern_seed = scramble(material.pattern_seed + palette.stair_design);
+  return material;
+}
+
 Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plane) {
   const Palette& palette = piece.palette();
   switch (finish) {
@@ -38,9 +53,21 @@ Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plan
     case WallFinish::kConcrete:
       return piece.running(Finish::kConcrete, 0.8F * palette.floor, palette.joint, plane);
     case WallFinish::kBrick:
-      return piece.running(Finish::kBrick, palette.wall, palette.dado, plane);
+      return stair_wall(piece, plane);
   }
   return piece.running(Finish::kWall, palette.wall, palette.dado, plane);
+}
+
+// Another design is another pattern: look-alikes with unlike ceilings do not count as alike.
+Material tiled_ceiling(const Piece& piece) {
+  constexpr int kPlastered = 5;
+  const Palette& palette = piece.palette();
+  const bool is_plastered = palette.ceiling_kind == kPlastered;
+  Material material = piece.running(is_plastered ? Finish::kPlaster : Finish::kCeiling,
+                                    palette.ceiling, paints::kWhite, kCeilingPlane);
+  material.pattern_seed = scramble(material.pattern_seed + palette.ceiling_design);
+  material.number = palette.ceiling_kind;
+  return material;
 }
 
 // A stain or deep scratch: a piece of the wall a hair in front of it.
@@ -133,18 +160,17 @@ void Furnisher::add_floor(const Eigen::Vector2f& low_m, const Eigen::Vector2f& h
 void Furnisher::add_ceiling(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, float z_m,
                             CeilingFinish finish) {
   Piece piece = piece_at(Stance{});
-  const Colour bar = paints::kWhite;
   const Colour& colour = palette_.ceiling;
   const auto material = [&] {
     switch (finish) {
       case CeilingFinish::kTiles:
-        return piece.running(Finish::kCeiling, colour, bar, kCeilingPlane);
+        return tiled_ceiling(piece);
       case CeilingFinish::kPlaster:
         return piece.running(Finish::kPlaster, colour, colour, kCeilingPlane);
       case CeilingFinish::kConcrete:
         return piece.running(Finish::kConcrete, 0.7F * colour, 0.5F * colour, kCeilingPlane);
     }
-    return piece.running(Finish::kCeiling, colour, bar, kCeilingPlane);
+    return tiled_ceiling(piece);
   }();
   piece.add_panel({.corner_m = {low_m.x(), high_m.y(), z_m},
                    .up = -Eigen::Vector3f::UnitY(),
@@ -155,14 +181,27 @@ void Furnisher::add_ceiling(const Eigen::Vector2f& low_m, const Eigen::Vector2f&
 void Furnisher::add_skirting(const Wall& wall, float from_along_m, float to_along_m) {
   Piece piece = piece_at(wall);
   const Material material = piece.made_of(Finish::kPaint, palette_.skirting);
-  piece.add_box({{from_along_m, 0.0F, 0.0F}, {to_along_m, 0.09F, 0.012F}}, {material, material});
+  piece.add_box({{from_along_m, 0.0F, 0.0F}, {to_along_m, palette_.skirting_m, 0.012F}},
+                {material, material});
 }
 
-void Furnisher::add_cable_duct(const Wall& wall) {
+void Furnisher::add_cornice(const Wall& wall, float width_m, float height_m) {
+  Piece piece = piece_at(wall);
+  const Material white = piece.made_of(Finish::kPaint, palette_.ceiling);
+  const float top_m = wall.ceiling_m - wall.floor_m;
+  const float long_m = length_m(wall);
+  // where two walls meet, the faces of one are a hair beside those of the other
+  const bool is_along_x = std::abs(right_of(wall).x()) > 0.5F;
+  const float hair_m = is_along_x ? 0.001F : 0.002F;
+  piece.add_box({{0.0F, top_m - height_m - hair_m, 0.0F}, {long_m, top_m + hair_m, width_m}},
+                {white, white});
+}
+
+void Furnisher::add_cable_duct(const Wall& wall, float below_m) {
   Piece piece = piece_at(wall);
   const Colour grey = colour_of_srgb(0.80F, 0.80F, 0.78F);
   const Material material = piece.made_of(Finish::kPlastic, grey);
-  const float top_m = wall.ceiling_m - wall.floor_m - 0.17F;
+  const float top_m = wall.ceiling_m - wall.floor_m - below_m;
   piece.add_box({{0.0F, top_m - 0.05F, 0.0F}, {length_m(wall), top_m, 0.035F}},
                 {material, material});
 }

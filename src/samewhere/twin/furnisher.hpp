@@ -33,6 +33,17 @@ enum class WallFinish { kBlocks, kPlaster, kConcrete, kBrick };
 enum class FloorFinish { kCarpet, kTiles, kConcrete, kWood };
 enum class CeilingFinish { kTiles, kPlaster, kConcrete };
 enum class Daylight { kBlinds, kView };
+enum class VentKind { kGrille, kSlot, kRound };
+
+// What a ceiling lamp is.
+enum class LampFace { kRibbed, kOpal, kLouvre, kTubes, kRound };
+struct LampFitting {
+  LampFace face = LampFace::kRibbed;
+  Eigen::Vector2f size_m{1.2F, 0.3F};
+  float drop_m = 0.0F;      // hangs this far below the ceiling
+  float brightness = 1.0F;  // over the usual
+};
+
 enum class Pictogram { kArrow, kStairs, kLift, kToilet, kExtinguisher };
 
 // A rack of shelves for pallets.
@@ -52,6 +63,7 @@ class Furnisher {
 
   // The thing that would come next is left out; what follows stays in step with the look-alikes.
   void skip_thing() { ++num_things_; }
+  std::uint64_t num_things() const { return num_things_; }
 
   // From `low_m` to `high_m`, heights in the unit as the wall's floor is.
   void add_wall(const Wall& wall, float low_m, float high_m, WallFinish finish);
@@ -61,7 +73,10 @@ class Furnisher {
                    CeilingFinish finish);
   void add_skirting(const Wall& wall, float from_along_m, float to_along_m);
 
-  // A leaf of 0.9 m x 2.05 m, its frame 0.07 m around it, the plate to the right of it.
+  // Where a wall meets the ceiling: `width_m` along the ceiling, `height_m` down the wall.
+  void add_cornice(const Wall& wall, float width_m, float height_m);
+
+  // A leaf of 0.9 m x 2.05 m, its frame at most 0.07 m around it, the plate to the right of it.
   void add_door(const Place& place, int number);
   // 1.8 m x 2.05 m, for a fire door across a corridor's end.
   void add_double_door(const Place& place);
@@ -73,15 +88,20 @@ class Furnisher {
   void add_extinguisher(const Place& place);
   void add_cabinet(const Place& place);  // 0.9 m wide, 0.32 m deep
   void add_switch(const Place& place);
+<<<<<<< HEAD
   void add_coat_rack(const Place& place);  // 1.0 m wide, 0.24 m deep, with coats and bags
   void add_leaflets(const Place& place);   // 0.72 m x 0.92 m, 0.05 m deep
   void add_low_shelf(const Place& place);  // 0.88 m wide, 0.3 m deep, small things on it
   void add_crates(const Place& place);     // 0.5 m wide, 0.38 m deep, up to 0.9 m high
   void add_window(const Place& place, Daylight daylight);  // 1.52 m wide, sill 0.87 m up
+=======
+  void add_window(const Place& place, Daylight daylight);  // 1.6 m wide at most, sill 0.87 m up
+>>>>>>> w-fabric
   void add_radiator(const Place& place);                   // 1.2 m wide, 0.12 m deep
   // Along the whole wall, 0.9 m up; higher by `rise_m` at its right end.
   void add_handrail(const Wall& wall, float rise_m = 0.0F);
-  void add_cable_duct(const Wall& wall);
+  // Its top this far below the ceiling.
+  void add_cable_duct(const Wall& wall, float below_m = 0.17F);
   // A run of two or three pipes along the whole wall, the lowest this far above the floor.
   void add_pipes(const Wall& wall, float height_m);
   void add_sign(const Place& place, Pictogram pictogram);
@@ -98,9 +118,9 @@ class Furnisher {
   void add_pallet(const Spot& spot);  // 1.2 m x 0.8 m with cartons
   void add_column(const Spot& spot, float side_m);
 
-  void add_ceiling_lamp(const Eigen::Vector2f& middle_m, const Eigen::Vector2f& size_m,
+  void add_ceiling_lamp(const Eigen::Vector2f& middle_m, const LampFitting& fitting,
                         float ceiling_m);
-  void add_ceiling_vent(const Eigen::Vector2f& middle_m, float ceiling_m);
+  void add_ceiling_vent(const Eigen::Vector2f& middle_m, VentKind kind, float ceiling_m);
   // Hangs across a corridor: read by who walks along `heading_rad` or against it.
   void add_exit_sign(const Eigen::Vector2f& middle_m, float heading_rad, float ceiling_m);
   void add_smoke_detector(const Eigen::Vector2f& middle_m, float ceiling_m);

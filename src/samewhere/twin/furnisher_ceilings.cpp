@@ -1,4 +1,4 @@
-#include <cmath>
+#include <array>
 
 #include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/piece.hpp>
@@ -10,14 +10,30 @@ constexpr float kLampRadiance = 13.0F;
 
 }  // namespace
 
-void Furnisher::add_ceiling_lamp(const Eigen::Vector2f& middle_m, const Eigen::Vector2f& size_m,
+void Furnisher::add_ceiling_lamp(const Eigen::Vector2f& middle_m, const LampFitting& fitting,
                                  float ceiling_m) {
+  constexpr float kThick_m = 0.03F;
   Piece piece = piece_below(middle_m, ceiling_m);
   Material light = piece.made_of(Finish::kLamp, paints::kLampWhite);
-  light.radiance = kLampRadiance * piece.light().lamps;
+  light.radiance = kLampRadiance * fitting.brightness * piece.light().lamps;
+  light.number = static_cast<int>(fitting.face);
   const Material white = piece.made_of(Finish::kPaint, paints::kWhite);
+  const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
   piece.begin_object("lamp");
-  piece.add_box(centred({0.0F, 0.0F}, size_m, {0.0F, 0.03F}), {light, white});
+  const float drop_m = fitting.drop_m;
+  const float thick_m = drop_m > 0.0F ? 2.0F * kThick_m : kThick_m;
+  const Box body = centred({0.0F, 0.0F}, fitting.size_m, {drop_m, drop_m + thick_m});
+  piece.add_box(body, {light, white});
+  if (drop_m > 0.0F) {
+    piece.add_panel({.corner_m = {body.low_m.x(), body.high_m.y(), drop_m},
+                     .up = -Eigen::Vector3f::UnitY(),
+                     .size_m = fitting.size_m},
+                    white);
+    for (const float side : {-0.4F, 0.4F}) {
+      const Eigen::Vector2f at = side * fitting.size_m;
+      piece.add_bar({.to_m = {at.x(), at.y(), drop_m}, .radius_m = 0.004F, .num_sides = 6}, steel);
+    }
+  }
   piece.end_object();
 }
 
@@ -41,12 +57,32 @@ void Furnisher::add_high_bay_lamp(const Eigen::Vector2f& middle_m, float ceiling
   piece.end_object();
 }
 
-void Furnisher::add_ceiling_vent(const Eigen::Vector2f& middle_m, float ceiling_m) {
+void Furnisher::add_ceiling_vent(const Eigen::Vector2f& middle_m, VentKind kind, float ceiling_m) {
   Piece piece = piece_below(middle_m, ceiling_m);
   const Material slots = piece.made_of(Finish::kGrille, paints::kWhite);
   const Material white = piece.made_of(Finish::kPaint, paints::kWhite);
+  const Material black = piece.made_of(Finish::kPlastic, paints::kBlack);
   piece.begin_object("vent");
-  piece.add_box(centred({0.0F, 0.0F}, {0.48F, 0.48F}, {0.0F, 0.012F}), {slots, white});
+  if (kind == VentKind::kGrille) {
+    piece.add_box(centred({0.0F, 0.0F}, {0.48F, 0.48F}, {0.0F, 0.012F}), {slots, white});
+  } else if (kind == VentKind::kSlot) {
+    piece.add_box(centred({0.0F, 0.0F}, {0.14F, 0.9F}, {0.0F, 0.008F}), {white, white});
+    for (const float x_m : {-0.03F, 0.03F}) {
+      piece.add_box(centred({x_m, 0.0F}, {0.025F, 0.84F}, {0.008F, 0.0085F}), {black, black});
+    }
+  } else {
+    constexpr std::array kRings_m = {0.16F, 0.11F, 0.06F};
+    float out_m = 0.0F;
+    for (const float radius_m : kRings_m) {
+      piece.add_bar({.from_m = {0.0F, 0.0F, out_m},
+                     .to_m = {0.0F, 0.0F, out_m + 0.015F},
+                     .radius_m = radius_m,
+                     .num_sides = 12,
+                     .has_ends = true},
+                    out_m > 0.02F ? black : white);
+      out_m += 0.015F;
+    }
+  }
   piece.end_object();
 }
 
@@ -68,25 +104,35 @@ void Furnisher::add_smoke_detector(const Eigen::Vector2f& middle_m, float ceilin
 }
 
 void Furnisher::add_exit_sign(const Eigen::Vector2f& middle_m, float heading_rad, float ceiling_m) {
-  constexpr float kBottom_m = -0.30F;
-  constexpr float kTop_m = -0.08F;
   Piece piece = piece_at(Spot{{middle_m.x(), middle_m.y(), ceiling_m}, heading_rad});
-  Material sign = piece.made_of(Finish::kSign, paints::kGreen, paints::kWhite);
+  const std::array<Eigen::Vector2f, 4> sizes_m = {
+      {{0.5F, 0.22F}, {0.36F, 0.18F}, {0.30F, 0.30F}, {0.62F, 0.20F}}};
+  constexpr std::array kDrops_m = {0.08F, 0.02F, 0.16F};
+  Choices choices(piece.draws().design());
+  const Eigen::Vector2f size_m = choices.of(sizes_m);
+  const float top_m = -choices.of(kDrops_m);
+  const float rod_m = 0.36F * size_m.x() * static_cast<float>(choices.next(2));
+  const bool is_white = choices.next(3) == 0;
+  const Colour ground = is_white ? paints::kWhite : paints::kGreen;
+  Material sign =
+      piece.made_of(Finish::kSign, ground, is_white ? 0.8F * paints::kGreen : paints::kWhite);
   const Material white = piece.made_of(Finish::kPlastic, paints::kWhite);
   const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
   piece.begin_object("exit sign");
-  const Box body{{-0.25F, kBottom_m, -0.015F}, {0.25F, kTop_m, 0.015F}};
-  piece.add_box(body, {sign, white});
-  piece.add_panel({.corner_m = {0.25F, kBottom_m, -0.015F},
+  const float bottom_m = top_m - size_m.y();
+  const float half_m = 0.5F * size_m.x();
+  piece.add_box({{-half_m, bottom_m, -0.015F}, {half_m, top_m, 0.015F}}, {sign, white});
+  piece.add_panel({.corner_m = {half_m, bottom_m, -0.015F},
                    .right = -Eigen::Vector3f::UnitX(),
-                   .size_m = {0.5F, kTop_m - kBottom_m}},
+                   .size_m = size_m},
                   sign);
-  for (const float x_m : {-0.18F, 0.18F}) {
-    piece.add_bar({.from_m = {x_m, kTop_m, 0.0F},
+  for (const float x_m : {-rod_m, rod_m}) {
+    piece.add_bar({.from_m = {x_m, top_m, 0.0F},
                    .to_m = {x_m, 0.0F, 0.0F},
                    .radius_m = 0.006F,
                    .num_sides = 6},
                   steel);
+    if (rod_m == 0.0F) break;
   }
   piece.end_object();
 }

@@ -10,18 +10,47 @@ constexpr float kDoorHeight_m = 2.05F;
 constexpr float kLeaf_m = 0.015F;  // stands out from the wall
 const Colour kGlass = colour_of_srgb(0.20F, 0.25F, 0.28F);
 
-// Lock plate with lever and keyhole; the lever points to the left.
-void add_lever(Piece& piece, float x_m, const Material& steel) {
-  piece.add_box(centred({x_m, 1.02F}, {0.045F, 0.21F}, {kLeaf_m, 0.022F}), {steel, steel});
+// Lever, with a lock plate or a rose, or an upright bar; the lever points to the hinges, which are
+// on the side of `to_hinges` (-1: left).
+void add_handle(Piece& piece, int kind, float to_hinges, const Material& steel) {
+  constexpr int kRose = 1;
+  constexpr int kBar = 2;
+  const float x_m = -0.38F * to_hinges;
+  const Material hole = piece.made_of(Finish::kPlastic, paints::kBlack);
+  if (kind == kBar) {
+    piece.add_bar({.from_m = {x_m, 0.75F, 0.055F},
+                   .to_m = {x_m, 1.35F, 0.055F},
+                   .radius_m = 0.013F,
+                   .num_sides = 8,
+                   .has_ends = true},
+                  steel);
+    for (const float y_m : {0.8F, 1.3F}) {
+      piece.add_box(centred({x_m, y_m}, {0.022F, 0.022F}, {kLeaf_m, 0.05F}), {steel, steel});
+    }
+    return;
+  }
+  const Eigen::Vector2f plate_m =
+      kind == kRose ? Eigen::Vector2f(0.055F, 0.055F) : Eigen::Vector2f(0.045F, 0.21F);
+  const float plate_up_m = kind == kRose ? 1.06F : 1.02F;
+  piece.add_box(centred({x_m, plate_up_m}, plate_m, {kLeaf_m, 0.022F}), {steel, steel});
   piece.add_box(centred({x_m, 1.06F}, {0.022F, 0.022F}, {0.022F, 0.055F}), {steel, steel});
-  piece.add_bar({.from_m = {x_m + 0.012F, 1.06F, 0.062F},
-                 .to_m = {x_m - 0.12F, 1.06F, 0.062F},
+  piece.add_bar({.from_m = {x_m - 0.012F * to_hinges, 1.06F, 0.062F},
+                 .to_m = {x_m + 0.12F * to_hinges, 1.06F, 0.062F},
                  .radius_m = 0.010F,
                  .num_sides = 8,
                  .has_ends = true},
                 steel);
-  const Material hole = piece.made_of(Finish::kPlastic, paints::kBlack);
-  piece.add_box(centred({x_m, 0.96F}, {0.012F, 0.024F}, {0.022F, 0.0235F}), {hole, hole});
+  piece.add_box(centred({x_m, 0.96F}, {0.012F, 0.024F}, {kLeaf_m, 0.0235F}), {hole, hole});
+}
+
+// A box with an arm at the top of a leaf, or none.
+void add_closer(Piece& piece, int kind, float to_hinges, const Material& steel) {
+  constexpr int kAtHinges = 1;
+  if (kind == 0) return;
+  const float x_m = kind == kAtHinges ? 0.25F * to_hinges : 0.0F;
+  const Eigen::Vector2f size_m =
+      kind == kAtHinges ? Eigen::Vector2f(0.26F, 0.06F) : Eigen::Vector2f(0.48F, 0.035F);
+  piece.add_box(centred({x_m, 1.98F}, size_m, {kLeaf_m, 0.065F}), {steel, steel});
 }
 
 void add_hinges(Piece& piece, float x_m, const Material& steel) {
@@ -42,15 +71,15 @@ void add_pane(Piece& piece, const Box& pane, const Material& steel) {
   piece.add_frame(around, 0.025F, steel);
 }
 
-void add_leaf_extras(Piece& piece, int variant, const Material& steel) {
+void add_leaf_extras(Piece& piece, int variant, float to_hinges, const Material& steel) {
   if (variant == 1 || variant == 3) {
     piece.add_box(centred({0.0F, 0.14F}, {0.84F, 0.24F}, {kLeaf_m, 0.017F}), {steel, steel});
   }
   if (variant == 2 || variant == 3) {
-    add_pane(piece, centred({0.18F, 1.55F}, {0.16F, 0.6F}, {kLeaf_m, 0.017F}), steel);
+    add_pane(piece, centred({-0.18F * to_hinges, 1.55F}, {0.16F, 0.6F}, {kLeaf_m, 0.017F}), steel);
   }
   if (variant == 4) {
-    add_pane(piece, centred({-0.05F, 1.45F}, {0.5F, 0.7F}, {kLeaf_m, 0.017F}), steel);
+    add_pane(piece, centred({0.05F * to_hinges, 1.45F}, {0.5F, 0.7F}, {kLeaf_m, 0.017F}), steel);
   }
 }
 
@@ -59,8 +88,9 @@ void add_plate(Piece& piece, int number) {
       piece.made_of(Finish::kPlate, paints::kWhite, colour_of_srgb(0.10F, 0.15F, 0.35F));
   plate.number = number;
   const Material edge = piece.made_of(Finish::kSteel, paints::kMetal);
+  const float up_m = piece.palette().door.plate_m;
   piece.begin_object(fmt::format("door plate {}", number), true);
-  piece.add_box(centred({0.68F, 1.55F}, {0.17F, 0.15F}, {0.0F, 0.008F}), {plate, edge});
+  piece.add_box(centred({0.68F, up_m}, {0.17F, 0.15F}, {0.0F, 0.008F}), {plate, edge});
   piece.end_object();
 }
 
@@ -69,6 +99,8 @@ void add_plate(Piece& piece, int number) {
 void Furnisher::add_door(const Place& place, int number) {
   constexpr float kWidth_m = 0.90F;
   constexpr int kNumVariants = 5;
+  const DoorDesign& design = palette_.door;
+  const float to_hinges = design.is_mirrored ? 1.0F : -1.0F;
   Piece piece = piece_at(place);
   const Material wood = piece.made_of(Finish::kWood, palette_.wood);
   const Material paint = piece.made_of(Finish::kPaint, palette_.frame);
@@ -78,11 +110,12 @@ void Furnisher::add_door(const Place& place, int number) {
   leaf.low_m.y() = 0.0F;
   piece.add_box(leaf, {wood, wood});
   leaf.high_m.z() = 0.04F;
-  piece.add_frame(leaf, 0.07F, paint);
-  add_lever(piece, 0.38F, steel);
-  add_hinges(piece, -0.442F, steel);
-  piece.add_box(centred({-0.25F, 1.98F}, {0.26F, 0.06F}, {kLeaf_m, 0.065F}), {steel, steel});
-  add_leaf_extras(piece, piece.draws().pick(kNumVariants), steel);
+  piece.add_frame(leaf, design.frame_m, paint);
+  add_handle(piece, design.handle, to_hinges, steel);
+  add_hinges(piece, 0.442F * to_hinges, steel);
+  add_closer(piece, design.closer, to_hinges, steel);
+  piece.begin_part(1);
+  add_leaf_extras(piece, piece.draws().pick(kNumVariants), to_hinges, steel);
   piece.end_object();
   piece.begin_part(0);
   if (number > 0) add_plate(piece, number);
@@ -184,22 +217,35 @@ void Furnisher::add_window(const Place& place, Daylight daylight) {
   const Material white = piece.made_of(Finish::kPlastic, paints::kWhite);
   const Material stone = piece.made_of(Finish::kConcrete, paints::kWhite);
   const bool is_open = daylight == Daylight::kView;
+  const WindowDesign& design = palette_.window;
   Material pane = piece.made_of(is_open ? Finish::kView : Finish::kBlinds, paints::kDaylight);
   constexpr float kSky = 1.4F;
   constexpr float kBlinds = 1.3F;
   pane.radiance = piece.light().daylight * (is_open ? kSky : kBlinds);
+  pane.number = design.dressing;
   piece.begin_object("window");
-  const Box glass = centred({0.0F, 1.55F}, {1.4F, 1.2F}, {0.0F, 0.004F});
+  constexpr float kBottom_m = 0.95F;
+  const float middle_m = kBottom_m + 0.5F * design.pane_m.y();
+  const Box glass = centred({0.0F, middle_m}, design.pane_m, {0.0F, 0.004F});
   piece.add_box(glass, {pane, white});
   Box around = glass;
   around.high_m.z() = 0.05F;
   piece.add_frame(around, 0.06F, white);
-  if (is_open) {
-    piece.add_box(centred({0.1F, 1.55F}, {0.07F, 1.2F}, {0.0F, 0.045F}), {white, white});
-    const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
-    piece.add_box(centred({0.1F, 1.5F}, {0.025F, 0.14F}, {0.045F, 0.075F}), {steel, steel});
+  const int num_bars = is_open ? 1 : design.num_bars;
+  for (int i = 0; i < num_bars; ++i) {
+    const auto ratio = (static_cast<float>(i) + 1.0F) / static_cast<float>(num_bars + 1);
+    const float x_m = (ratio - 0.5F) * design.pane_m.x();
+    piece.add_box(centred({x_m, middle_m}, {0.07F, design.pane_m.y()}, {0.0F, 0.045F}),
+                  {white, white});
   }
-  piece.add_box(centred({0.0F, 0.87F}, {1.6F, 0.03F}, {0.0F, 0.15F}), {stone, stone});
+  if (is_open) {
+    const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
+    piece.add_box(centred({0.0F, 1.5F}, {0.025F, 0.14F}, {0.045F, 0.075F}), {steel, steel});
+  }
+  if (design.has_sill) {
+    piece.add_box(centred({0.0F, 0.87F}, {design.pane_m.x() + 0.2F, 0.03F}, {0.0F, 0.15F}),
+                  {stone, stone});
+  }
   piece.end_object();
 }
 

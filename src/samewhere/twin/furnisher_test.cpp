@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -45,8 +46,9 @@ void furnish(Furnisher& f, int number) {
   f.add_rack({{0.0F, 0.0F, 0.0F}, 0.3F}, {2.7F, 3});
   f.add_pallet({{0.0F, 0.0F, 0.0F}, 0.3F});
   f.add_column({{0.0F, 0.0F, 0.0F}, 0.3F}, 0.4F);
-  f.add_ceiling_lamp({0.0F, 0.0F}, {1.2F, 0.3F}, 2.6F);
-  f.add_ceiling_vent({0.0F, 0.0F}, 2.6F);
+  f.add_cornice(kWall, 0.06F, 0.06F);
+  f.add_ceiling_lamp({0.0F, 0.0F}, {}, 2.6F);
+  f.add_ceiling_vent({0.0F, 0.0F}, VentKind::kGrille, 2.6F);
   f.add_exit_sign({0.0F, 0.0F}, 0.4F, 2.6F);
   f.add_smoke_detector({0.0F, 0.0F}, 2.6F);
   f.add_high_bay_lamp({0.0F, 0.0F}, 6.0F);
@@ -207,8 +209,12 @@ TEST(Furnisher, ADoorIsAsLargeAsADoor) {
     box.extend(r.corner_m);
     box.extend(r.at(r.size_m));
   }
-  EXPECT_NEAR(box.sizes().z(), 2.05F + 0.07F, 1e-3F);
-  EXPECT_NEAR(box.min().x(), -0.52F, 1e-3F);  // the frame
+  constexpr float kLeastFrame_m = 0.04F;
+  constexpr float kMostFrame_m = 0.07F;
+  EXPECT_GT(box.sizes().z(), 2.05F + kLeastFrame_m - 1e-3F);
+  EXPECT_LT(box.sizes().z(), 2.05F + kMostFrame_m + 1e-3F);
+  EXPECT_GT(box.min().x(), -0.45F - kMostFrame_m - 1e-3F);
+  EXPECT_LT(box.min().x(), -0.45F - kLeastFrame_m + 1e-3F);
   EXPECT_NEAR(box.max().x(), 0.765F, 1e-3F);  // the plate
 }
 
@@ -307,6 +313,69 @@ TEST(Twins, ShareTheirPatternInTheRoomsFinishesByTheOwnRatio) {
     EXPECT_GT(at_ratio(0.5F), at_ratio(1.0F) - 0.1) << static_cast<int>(finish);
     EXPECT_GT(at_ratio(0.1F), 0.75) << static_cast<int>(finish);
   }
+}
+
+// What look-alikes at a similarity are made of, in so many pairs of them.
+struct FabricCount {
+  int num_ceilings = 0;  // pairs under ceilings of one kind
+  int num_windows = 0;   // pairs with windows of one size and dressing
+  int num_doors = 0;     // pairs whose doors have one kind of frame, closer, handle and plate
+};
+
+FabricCount same_fabric(double similarity, int num_pairs) {
+  FabricCount count;
+  for (int pair = 0; pair < num_pairs; ++pair) {
+    const auto palette = [&](std::uint64_t own_seed) {
+      return Palette({.common_seed = static_cast<std::uint64_t>(pair),
+                      .own_seed = own_seed,
+                      .similarity = similarity});
+    };
+    const Palette a = palette(1000 + 2 * static_cast<std::uint64_t>(pair));
+    const Palette b = palette(1001 + 2 * static_cast<std::uint64_t>(pair));
+    const auto door = [](const DoorDesign& d) {
+      return std::tuple(d.frame_m, d.is_mirrored, d.closer, d.handle, d.plate_m);
+    };
+    count.num_ceilings += a.ceiling_kind == b.ceiling_kind ? 1 : 0;
+    const bool is_one_size = a.window.pane_m == b.window.pane_m;
+    count.num_windows += is_one_size && a.window.dressing == b.window.dressing ? 1 : 0;
+    count.num_doors += door(a.door) == door(b.door) ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Twins, ShareTheirFabricAtSimilarityOneAndHardlyEverAtZero) {
+  constexpr int kNumPairs = 60;
+  const FabricCount alike = same_fabric(1.0, kNumPairs);
+  EXPECT_EQ(alike.num_ceilings, kNumPairs);
+  EXPECT_EQ(alike.num_windows, kNumPairs);
+  EXPECT_EQ(alike.num_doors, kNumPairs);
+  const FabricCount usual = same_fabric(0.9, kNumPairs);
+  EXPECT_GT(usual.num_ceilings, kNumPairs / 2);
+  EXPECT_GT(usual.num_doors, kNumPairs / 2);
+  const FabricCount apart = same_fabric(0.0, kNumPairs);
+  EXPECT_LT(apart.num_ceilings, kNumPairs / 3);
+  EXPECT_LT(apart.num_windows, kNumPairs / 6);
+  EXPECT_LT(apart.num_doors, kNumPairs / 10);
+}
+
+TEST(Twins, UnderUnlikeCeilingsAreNoImpostors) {
+  // the pattern's seed tells a ceiling of another kind
+  bool is_any_unlike = false;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto ceiling = [&](std::uint64_t own_seed) {
+      Building building;
+      building.units = {Unit{}};
+      Furnisher f(building, 0, {.common_seed = seed, .own_seed = own_seed, .similarity = 0.6});
+      f.add_ceiling({-4.0F, -2.0F}, {4.0F, 2.0F}, 2.6F, CeilingFinish::kTiles);
+      return building.rectangles.front().material;
+    };
+    const Material a = ceiling(100 + seed);
+    const Material b = ceiling(200 + seed);
+    if (a.number == b.number) continue;
+    EXPECT_NE(a.pattern_seed, b.pattern_seed) << "seed " << seed;
+    is_any_unlike = true;
+  }
+  EXPECT_TRUE(is_any_unlike);
 }
 
 TEST(Papers, AreOwnHereAndThereEvenAtSimilarityOne) {

@@ -34,6 +34,26 @@ Style layout_of(const Draft& draft, int unit) {
           .similarity = style.similarity};
 }
 
+// Draws of the layout beside those of the gaps, which count from 0.
+constexpr std::uint64_t kCeilingDraws = 1ULL << 40;
+constexpr std::uint64_t kEdgeDraws = 2ULL << 40;
+constexpr std::uint64_t kBayDraws = 3ULL << 40;
+
+constexpr int kNumLamps = 9;
+const std::array<LampFitting, kNumLamps>& lamp_fittings() {
+  static const std::array<LampFitting, kNumLamps> fittings = {
+      {{LampFace::kRibbed, {1.2F, 0.3F}},
+       {LampFace::kOpal, {0.6F, 0.6F}},
+       {LampFace::kLouvre, {0.6F, 0.6F}},
+       {LampFace::kTubes, {1.5F, 0.25F}},
+       {LampFace::kRound, {0.36F, 0.36F}},
+       {LampFace::kOpal, {1.4F, 0.08F}, 0.22F},
+       {LampFace::kOpal, {1.2F, 0.15F}},
+       {LampFace::kRound, {0.5F, 0.5F}},
+       {LampFace::kLouvre, {1.2F, 0.2F}, 0.12F}}};
+  return fittings;
+}
+
 float length_of(const Wall& wall) { return (wall.to_m - wall.from_m).norm(); }
 
 }  // namespace
@@ -139,12 +159,53 @@ Dresser::Dresser(Draft& draft, int unit)
     : plan_(draft.plan),
       unit_(unit),
       layout_(layout_of(draft, unit)),
+      ceiling_(ceiling_of(layout_)),
+      edge_(edge_of(layout_)),
       is_later_visit_(draft.visit.index > 0),
       furnisher_(draft.building, unit, style_of(draft, unit), draft.visit.light) {
   // things of other kinds of units draw for themselves
   constexpr int kMaxThings = 1000;
   for (int i = 0; i < kMaxThings * kind_of(draft, unit); ++i) furnisher_.skip_thing();
   add_surfaces();
+}
+
+// What is alike to whoever walks below goes together: lamps, vents, signs.
+Dresser::CeilingDesign Dresser::ceiling_of(const Style& layout) {
+  Draws draws(layout, kCeilingDraws);
+  constexpr std::array<float, 4> kPitches_m = {2.4F, 1.8F, 3.2F, 4.0F};
+  constexpr std::array<float, 3> kPhases = {0.5F, 0.25F, 0.75F};
+  const std::array<std::vector<float>, 4> rows = {{{0.5F}, {0.28F}, {0.72F}, {0.26F, 0.74F}}};
+  constexpr std::array<std::optional<VentKind>, 4> kVents = {VentKind::kGrille, VentKind::kSlot,
+                                                             VentKind::kRound, std::nullopt};
+  constexpr std::array<float, 3> kVentRows = {0.5F, 0.25F, 0.75F};
+  constexpr std::array<float, 5> kSigns_m = {1.3F, 0.8F, 2.3F, 3.6F, 0.0F};
+  CeilingDesign design;
+  Choices lamps(draws.design());
+  design.lamp = lamps.of(lamp_fittings());
+  design.is_across = lamps.next(3) == 0;
+  design.pitch_m = lamps.of(kPitches_m);
+  design.phase = lamps.of(kPhases);
+  design.rows = lamps.of(rows);
+  Choices vents(draws.design());
+  design.vent = vents.of(kVents);
+  design.vent_row = vents.of(kVentRows);
+  design.vent_step = 1 + vents.next(3);
+  design.detector_row = vents.of(kVentRows);
+  Choices signs(draws.design());
+  design.signs_m = {signs.of(kSigns_m), signs.of(kSigns_m)};
+  return design;
+}
+
+Dresser::EdgeDesign Dresser::edge_of(const Style& layout) {
+  Draws draws(layout, kEdgeDraws);
+  const std::array<Eigen::Vector2f, 4> cornices_m = {
+      {{0.0F, 0.0F}, {0.06F, 0.06F}, {0.20F, 0.18F}, {0.12F, 0.05F}}};
+  constexpr std::array<float, 4> kDucts_m = {0.22F, 0.0F, 0.36F, 0.28F};
+  constexpr std::array<float, 3> kPipes_m = {0.42F, 0.55F, 0.48F};
+  Choices choices(draws.design());
+  return {.cornice_m = choices.of(cornices_m),
+          .duct_below_m = choices.of(kDucts_m),
+          .pipes_below_m = choices.of(kPipes_m)};
 }
 
 void Dresser::add_surfaces() {
@@ -177,11 +238,29 @@ void Dresser::dress_wall(const WallPiece& piece, const Dress& dress) {
   if (use != Use::kBare) fill_long_gap(gap);
   add_skirting(piece.wall, doors_m);
   constexpr float kShortest_m = 1.5F;
-  if (piece.length_m() < kShortest_m) return;
-  constexpr float kBelowCeiling_m = 0.34F;
-  const float height_m = piece.wall.ceiling_m - piece.wall.floor_m - kBelowCeiling_m;
-  if (use == Use::kDoors && dress.has_ducts) furnisher_.add_cable_duct(piece.wall);
-  if (use == Use::kPlain && dress.has_pipes) furnisher_.add_pipes(piece.wall, height_m);
+  if (piece.length_m() >= kShortest_m) add_edge(piece.wall, use, dress);
+}
+
+// Takes three things whatever there is.
+void Dresser::add_edge(const Wall& wall, Use use, const Dress& dress) {
+  const std::uint64_t end = furnisher_.num_things() + 3;
+  const Eigen::Vector2f& cornice_m = edge_.cornice_m;
+  if (cornice_m.x() > 0.0F) furnisher_.add_cornice(wall, cornice_m.x(), cornice_m.y());
+  if (use == Use::kDoors && dress.has_ducts && edge_.duct_below_m > 0.0F) {
+    furnisher_.add_cable_duct(wall, edge_.duct_below_m);
+  }
+  const float height_m = wall.ceiling_m - wall.floor_m - edge_.pipes_below_m;
+  if (use == Use::kPlain && dress.has_pipes) furnisher_.add_pipes(wall, height_m);
+  while (furnisher_.num_things() < end) furnisher_.skip_thing();
+}
+
+// Doors between the first and the last need not stand in the middle of their bays.
+float Dresser::shift_of_bay(bool is_door, int bay, int num_bays, float pitch_m) {
+  constexpr float kMost_m = 0.35F;
+  Draws draws(layout_, kBayDraws + num_bays_++);
+  const float slack_m = 0.5F * (pitch_m - kHalfDoor_m - kPlateEnd_m);
+  const float shift_m = draws.shift(std::clamp(slack_m, 0.0F, kMost_m));
+  return is_door && bay > 0 && bay + 1 < num_bays ? shift_m : 0.0F;
 }
 
 // As many doors or windows as there is room for, and what is between them. Leaves the gap behind
@@ -192,7 +271,9 @@ std::vector<Eigen::Vector2f> Dresser::add_bays(Use use, float pitch_m, Gap& gap)
   const int num_bays = static_cast<int>(length_m / pitch_m);
   std::vector<Eigen::Vector2f> doors_m;
   for (int i = 0; i < num_bays; ++i) {
-    const float middle_m = (static_cast<float>(i) + 0.5F) * length_m / static_cast<float>(num_bays);
+    const float shift_m = shift_of_bay(has_doors, i, num_bays, pitch_m);
+    const float middle_m =
+        (static_cast<float>(i) + 0.5F) * length_m / static_cast<float>(num_bays) + shift_m;
     add_bay({gap.wall, middle_m}, use);
     gap.to_m = middle_m - (has_doors ? kHalfDoor_m : kHalfWindow_m);
     fill_gap(gap);
@@ -233,7 +314,10 @@ void Dresser::fill_gap(const Gap& gap) {
     fitting.push_back(filling);
     widest_m = std::max(widest_m, width_m);
   }
-  if (fitting.empty()) return;
+  if (fitting.empty()) {
+    for (int i = 0; i < 2; ++i) furnisher_.skip_thing();
+    return;
+  }
   const auto filling =
       fitting[static_cast<std::size_t>(draws.pick(static_cast<int>(fitting.size())))];
   const float slack_m = 0.5F * (gap.width_m() - widest_m) - kMargin_m;
@@ -251,40 +335,136 @@ void Dresser::add_skirting(const Wall& wall, const std::vector<Eigen::Vector2f>&
   furnisher_.add_skirting(wall, from_m, length_of(wall));
 }
 
-void Dresser::add_ceiling_things(const Space& space) {
-  constexpr float kPitch_m = 2.4F;
-  const Eigen::Vector2f size_m = space.high_m - space.low_m;
-  const int along = size_m.x() >= size_m.y() ? 0 : 1;
-  const int num_rows = size_m[1 - along] > 3.2F ? 2 : 1;
-  const int num_lamps = std::max(1, static_cast<int>(std::lround(size_m[along] / kPitch_m)));
-  const auto at = [&](float ratio_along, float ratio_across) {
-    Eigen::Vector2f point = space.low_m;
-    point[along] += ratio_along * size_m[along];
-    point[1 - along] += ratio_across * size_m[1 - along];
+namespace {
+
+// Along the longer side of a space and across it.
+struct Course {
+  explicit Course(const Space& space)
+      : low_m(space.low_m),
+        size_m(space.high_m - space.low_m),
+        along(size_m.x() >= size_m.y() ? 0 : 1) {}
+
+  float length_m() const { return size_m[along]; }
+  float width_m() const { return size_m[1 - along]; }
+  Eigen::Vector2f at(float along_m, float across_m) const {
+    Eigen::Vector2f point = low_m;
+    point[along] += along_m;
+    point[1 - along] += across_m;
     return point;
-  };
-  const Eigen::Vector2f lamp_m =
-      along == 0 ? Eigen::Vector2f(1.2F, 0.3F) : Eigen::Vector2f(0.3F, 1.2F);
-  for (int row = 0; row < num_rows; ++row) {
-    const float across = (static_cast<float>(row) + 0.5F) / static_cast<float>(num_rows);
-    for (int i = 0; i < num_lamps; ++i) {
-      const auto middle = (static_cast<float>(i) + 0.5F) / static_cast<float>(num_lamps);
-      furnisher_.add_ceiling_lamp(at(middle, across), lamp_m, space.ceiling_m);
+  }
+
+  Eigen::Vector2f low_m;
+  Eigen::Vector2f size_m;
+  int along;
+};
+
+// Where the middle of something of this size is, so that it stays off the walls.
+float clear_of_ends(float wanted_m, float size_m, float room_m) {
+  constexpr float kClear_m = 0.06F;
+  const float least_m = 0.5F * size_m + kClear_m;
+  return least_m > 0.5F * room_m ? 0.5F * room_m : std::clamp(wanted_m, least_m, room_m - least_m);
+}
+
+}  // namespace
+
+// Takes the same number of things whatever the design: look-alikes stay in step.
+void Dresser::add_ceiling_things(const Space& space) {
+  constexpr float kPerMetre = 3.0F;
+  constexpr std::uint64_t kAtLeast = 24;
+  const std::uint64_t end = furnisher_.num_things() + kAtLeast +
+                            static_cast<std::uint64_t>(kPerMetre * Course(space).length_m());
+  const LampRow lamps = add_lamps(space);
+  add_vents(space, lamps);
+  add_exit_signs(space, lamps);
+  core::require(furnisher_.num_things() <= end, "a ceiling has room for its things");
+  while (furnisher_.num_things() < end) furnisher_.skip_thing();
+}
+
+Dresser::LampRow Dresser::add_lamps(const Space& space) {
+  constexpr float kWide_m = 3.2F;
+  const Course course(space);
+  LampFitting lamp = ceiling_.lamp;
+  if ((course.along == 0) == ceiling_.is_across) std::swap(lamp.size_m.x(), lamp.size_m.y());
+  const Eigen::Vector2f lamp_m(lamp.size_m[course.along], lamp.size_m[1 - course.along]);
+  std::vector<float> rows = ceiling_.rows;
+  if (course.width_m() > kWide_m) rows = {0.25F, 0.75F};
+  if (lamp_m.y() > 0.4F * course.width_m()) rows = {0.5F};
+  // about as much light whatever the design
+  const float usual_m2 =
+      0.36F * ceiling_.pitch_m / 2.4F * (course.width_m() > kWide_m ? 2.0F : 1.0F);
+  const float own_m2 = lamp.size_m.prod() * static_cast<float>(rows.size());
+  lamp.brightness = std::clamp(usual_m2 / own_m2, 0.5F, 4.0F);
+  const LampRow row_of_lamps = lamps_along(course.length_m(), lamp_m.x());
+  for (const float row : rows) {
+    const float across_m = clear_of_ends(row * course.width_m(), lamp_m.y(), course.width_m());
+    for (int i = 0; i < row_of_lamps.num_lamps; ++i) {
+      furnisher_.add_ceiling_lamp(course.at(row_of_lamps.middle_m(i), across_m), lamp,
+                                  space.ceiling_m);
     }
   }
-  for (int i = 1; i < num_lamps; ++i) {
-    const auto between = static_cast<float>(i) / static_cast<float>(num_lamps);
-    if (i % 2 == 1) {
-      furnisher_.add_ceiling_vent(at(between, 0.5F), space.ceiling_m);
-    } else {
-      furnisher_.add_smoke_detector(at(between, 0.5F), space.ceiling_m);
+  return row_of_lamps;
+}
+
+// As near to the pitch as there is room for; what moves them leaves them clear of each other.
+Dresser::LampRow Dresser::lamps_along(float room_m, float lamp_m) const {
+  constexpr float kLeastGap_m = 0.15F;
+  const auto most = static_cast<int>(room_m / (lamp_m + kLeastGap_m));
+  const auto wanted = static_cast<int>(std::lround(room_m / ceiling_.pitch_m));
+  LampRow row{.num_lamps = std::max(1, std::min(wanted, most))};
+  row.step_m = room_m / static_cast<float>(row.num_lamps);
+  row.gap_m = row.step_m - lamp_m;
+  const float slack_m = std::max(0.0F, 0.5F * (row.gap_m - kLeastGap_m));
+  row.shift_m = row.num_lamps == 1
+                    ? 0.0F
+                    : std::clamp((ceiling_.phase - 0.5F) * row.step_m, -slack_m, slack_m);
+  return row;
+}
+
+// Between the lamps, where there is room, in turns with smoke detectors.
+void Dresser::add_vents(const Space& space, const LampRow& lamps) {
+  constexpr float kVent_m = 0.5F;
+  const Course course(space);
+  if (lamps.gap_m < kVent_m + 0.1F) return;
+  for (int i = 1; i < lamps.num_lamps; ++i) {
+    const float along_m = lamps.middle_m(i) - 0.5F * lamps.step_m;
+    const auto at = [&](float row) {
+      return course.at(along_m, clear_of_ends(row * course.width_m(), kVent_m, course.width_m()));
+    };
+    if (i % ceiling_.vent_step != 1 % ceiling_.vent_step) {
+      furnisher_.add_smoke_detector(at(ceiling_.detector_row), space.ceiling_m);
+    } else if (ceiling_.vent) {
+      furnisher_.add_ceiling_vent(at(ceiling_.vent_row), *ceiling_.vent, space.ceiling_m);
     }
   }
+}
+
+// Not right below a lamp.
+float Dresser::LampRow::beside_lamp_m(float wanted_m) const {
+  constexpr float kBeside_m = 0.3F;
+  const auto nearest = static_cast<int>(std::lround((wanted_m - shift_m) / step_m - 0.5F));
+  const float lamp_m = middle_m(std::clamp(nearest, 0, num_lamps - 1));
+  const float least_m = 0.5F * (step_m - gap_m) + kBeside_m;
+  if (std::abs(wanted_m - lamp_m) >= least_m) return wanted_m;
+  const float low_m = lamp_m - least_m;
+  const float high_m = lamp_m + least_m;
+  const float room_m = step_m * static_cast<float>(num_lamps);
+  const bool has_room_above = high_m < room_m - kBeside_m;
+  const bool is_below = (wanted_m < lamp_m && low_m > kBeside_m) || !has_room_above;
+  return is_below ? low_m : high_m;
+}
+
+void Dresser::add_exit_signs(const Space& space, const LampRow& lamps) {
   constexpr float kCorridor_m = 6.0F;
-  if (size_m[along] < kCorridor_m) return;
-  const float heading_rad = along == 0 ? 0.0F : 1.5707963F;
-  furnisher_.add_exit_sign(at(1.3F / size_m[along], 0.5F), heading_rad, space.ceiling_m);
-  furnisher_.add_exit_sign(at(1.0F - 1.3F / size_m[along], 0.5F), heading_rad, space.ceiling_m);
+  const Course course(space);
+  if (course.length_m() < kCorridor_m) return;
+  const float heading_rad = course.along == 0 ? 0.0F : 1.5707963F;
+  const auto add_at = [&](float along_m) {
+    furnisher_.add_exit_sign(course.at(lamps.beside_lamp_m(along_m), 0.5F * course.width_m()),
+                             heading_rad, space.ceiling_m);
+  };
+  const auto [first_m, last_m] = ceiling_.signs_m;
+  if (first_m > 0.0F) add_at(first_m);
+  if (last_m > 0.0F) add_at(course.length_m() - last_m);
 }
 
 Wall Dresser::wall_of(int space, int side) const {
@@ -365,14 +545,20 @@ void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
       {{{right_m, ends_m[1]}, {right_m, ends_m[0]}, back.floor_m, back.ceiling_m}, 0.65F});
   furnisher_.add_notice_board(
       {{{left_m, ends_m[0]}, {left_m, ends_m[1]}, back.floor_m, back.ceiling_m}, 0.65F});
-  furnisher_.add_ceiling_lamp({0.5F * (left_m + right_m), head_m + 0.5F * kLanding_m}, {1.2F, 0.3F},
+  LampFitting lamp = ceiling_.lamp;
+  lamp.drop_m = 0.0F;
+  lamp.brightness = std::min(0.36F / lamp.size_m.prod(), 4.0F);
+  furnisher_.add_ceiling_lamp({0.5F * (left_m + right_m), head_m + 0.5F * kLanding_m}, lamp,
                               back.ceiling_m);
-  // on the ceiling of a step in the middle of each flight
+  // on the ceiling of a step in the middle of each flight, and no longer than that
   const float y_m = corner_m.y() + 0.5F * kFlight_m - 0.14F;
   const float rise_m = kStorey_m / 18.0F;
-  furnisher_.add_ceiling_lamp({right_m - 0.5F * kFlightWidth_m, y_m}, {1.0F, 0.2F},
+  lamp.size_m.x() = std::min(lamp.size_m.x(), 1.0F);
+  lamp.size_m.y() = std::min(lamp.size_m.y(), 0.2F);
+  lamp.brightness = std::min(0.2F / lamp.size_m.prod(), 4.0F);
+  furnisher_.add_ceiling_lamp({right_m - 0.5F * kFlightWidth_m, y_m}, lamp,
                               floor_m + 4.0F * rise_m + 2.7F);
-  furnisher_.add_ceiling_lamp({left_m + 0.5F * kFlightWidth_m, y_m}, {1.0F, 0.2F},
+  furnisher_.add_ceiling_lamp({left_m + 0.5F * kFlightWidth_m, y_m}, lamp,
                               floor_m + 14.0F * rise_m + 2.7F);
 }
 

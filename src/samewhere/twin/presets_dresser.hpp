@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <samewhere/twin/furnisher.hpp>
@@ -73,20 +74,61 @@ class Dresser {
  private:
   struct Gap;
 
+  // How all ceilings of the unit are fitted.
+  struct CeilingDesign {
+    LampFitting lamp;
+    bool is_across = false;            // lamps lie across the space
+    float pitch_m = 2.4F;              // from lamp to lamp, about
+    float phase = 0.5F;                // of the first lamp, in pitches
+    std::vector<float> rows = {0.5F};  // where across the space, shares of its width
+    std::optional<VentKind> vent;
+    float vent_row = 0.5F;
+    int vent_step = 2;  // one in so many gaps between lamps
+    float detector_row = 0.5F;
+    std::array<float, 2> signs_m = {1.3F, 1.3F};  // from either end; 0: none there
+  };
+  // Lamps one behind the other.
+  struct LampRow {
+    int num_lamps = 1;
+    float step_m = 0.0F;   // from middle to middle
+    float gap_m = 0.0F;    // between two
+    float shift_m = 0.0F;  // of all of them
+
+    float beside_lamp_m(float wanted_m) const;
+    float middle_m(int lamp) const { return (static_cast<float>(lamp) + 0.5F) * step_m + shift_m; }
+  };
+  // How walls meet the ceiling.
+  struct EdgeDesign {
+    Eigen::Vector2f cornice_m = Eigen::Vector2f::Zero();  // along ceiling and wall; 0: none
+    float duct_below_m = 0.17F;                           // the ceiling; 0: no duct
+    float pipes_below_m = 0.34F;
+  };
+  static CeilingDesign ceiling_of(const Style& layout);
+  static EdgeDesign edge_of(const Style& layout);
+
   void add_surfaces();
   void dress_wall(const WallPiece& piece, const Dress& dress);
   std::vector<Eigen::Vector2f> add_bays(Use use, float pitch_m, Gap& gap);
+  float shift_of_bay(bool is_door, int bay, int num_bays, float pitch_m);
   void fill_long_gap(Gap gap);
   void add_bay(const Place& place, Use use);
   void fill_gap(const Gap& gap);
+  void add_edge(const Wall& wall, Use use, const Dress& dress);
   void add_ceiling_things(const Space& space);
+  LampRow add_lamps(const Space& space);
+  LampRow lamps_along(float room_m, float lamp_m) const;
+  void add_vents(const Space& space, const LampRow& lamps);
+  void add_exit_signs(const Space& space, const LampRow& lamps);
 
   const Plan& plan_;
   int unit_;
   Style layout_;
+  CeilingDesign ceiling_;
+  EdgeDesign edge_;
   bool is_later_visit_;
   Furnisher furnisher_;
   std::uint64_t num_gaps_ = 0;
+  std::uint64_t num_bays_ = 0;
   int next_number_ = 1;
 };
 

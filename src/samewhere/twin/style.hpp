@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -45,6 +46,8 @@ class Draws {
   std::uint32_t own_seed() { return static_cast<std::uint32_t>(own_.next()); }
   // True where the last discrete choice was this one's own.
   bool was_own() const { return was_own_; }
+  // Many small choices that go together: own or common as one.
+  std::uint32_t design() { return static_cast<std::uint32_t>(pick(1 << 30)); }
   float own_ratio() const { return static_cast<float>(1.0 - similarity_); }
 
  private:
@@ -56,7 +59,46 @@ class Draws {
   bool was_own_ = false;
 };
 
-// The colours and patterns that run through a whole unit.
+// Small numbers out of one design, one after the other.
+class Choices {
+ public:
+  explicit Choices(std::uint32_t design) : rest_(design) {}
+
+  // Below `count`.
+  int next(int count) {
+    const auto n = static_cast<std::uint32_t>(count);
+    const auto choice = static_cast<int>(rest_ % n);
+    rest_ /= n;
+    return choice;
+  }
+  // One of a list.
+  template <class T, std::size_t n>
+  const T& of(const std::array<T, n>& list) {
+    return list[static_cast<std::size_t>(next(static_cast<int>(n)))];
+  }
+
+ private:
+  std::uint32_t rest_;
+};
+
+// How all doors of a unit are made.
+struct DoorDesign {
+  float frame_m = 0.07F;     // width, at most 0.07
+  bool is_mirrored = false;  // the handle on the left
+  int closer = 0;            // 0: none, 1: at the hinges, 2: across the middle
+  int handle = 0;            // 0: lever on a plate, 1: lever on a rose, 2: upright bar
+  float plate_m = 1.55F;     // height of the number
+};
+
+// How all windows of a unit are made and dressed.
+struct WindowDesign {
+  Eigen::Vector2f pane_m{1.4F, 1.2F};
+  int dressing = 0;  // as Finish::kBlinds reads it
+  bool has_sill = true;
+  int num_bars = 0;  // upright, between panes
+};
+
+// The colours, patterns and fittings that run through a whole unit.
 struct Palette {
   explicit Palette(const Style& style);
 
@@ -64,6 +106,16 @@ struct Palette {
   std::uint32_t pattern_seed = 0;
   std::uint32_t own_pattern_seed = 0;
   std::uint32_t wear_seed = 0;
+  // Of tiled ceilings: which kind, and where the grid begins.
+  int ceiling_kind = 0;
+  std::uint32_t ceiling_design = 0;
+  std::uint32_t stair_design = 0;  // of walls that are bricks by default
+  float skirting_m = 0.09F;        // height
+  DoorDesign door;
+  WindowDesign window;
+
+ private:
+  void choose_fittings(Draws& draws);
 };
 
 }  // namespace samewhere::twin
