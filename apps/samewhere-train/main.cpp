@@ -148,7 +148,7 @@ bool run_epoch(Trainer& trainer, int num_epochs) {
   if (!figures) return false;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   const bool is_best = trainer.best_epoch().epoch == epoch;
-  fmt::print("epoch {}/{}: loss {:.6f} training, {:.6f} validation{}, {:.1f} images/s\n", epoch,
+  fmt::print("epoch {}/{}: loss {:.4f} training, {:.4f} validation{}, {:.1f} images/s\n", epoch,
              num_epochs, figures->training_error, figures->validation_error,
              is_best ? " (best)" : "",
              static_cast<double>(trainer.split().training.size()) / elapsed.count());
@@ -176,9 +176,8 @@ int train(const Job& job) {
   }
   const Quality quality = write_network(job, images, trainer);
   fmt::print(
-      "{}: epoch {}, validation loss {:.6f} ({:.6f} for the mean target), recognition of warped "
-      "views {:.1f} % (HOG {:.1f} %)\n",
-      job.out.string(), quality.best.epoch, quality.best.validation_error, quality.error_of_mean,
+      "{}: epoch {}, validation loss {:.4f}, recognition of warped views {:.1f} % (HOG {:.1f} %)\n",
+      job.out.string(), quality.best.epoch, quality.best.validation_error,
       100.0 * quality.recognition, 100.0 * quality.recognition_of_hog);
   return kDone;
 }

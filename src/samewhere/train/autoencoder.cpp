@@ -5,6 +5,7 @@
 
 #include <ATen/Parallel.h>
 #include <dlfcn.h>
+#include <torch/nn/init.h>
 #include <torch/nn/modules/batchnorm.h>
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/linear.h>
@@ -54,6 +55,9 @@ class Layers : public torch::nn::Module {
               torch::nn::BatchNorm2dOptions(convolution.num_outputs).affine(!is_code))));
     }
     decoder_ = register_module("decoder", torch::nn::Linear(plan.code_size, plan.target_size));
+    // what is not known yet is not guessed: it starts from the mean target
+    torch::nn::init::zeros_(decoder_->weight);
+    torch::nn::init::zeros_(decoder_->bias);
   }
 
   Tensor encode(Tensor x) {
@@ -181,8 +185,7 @@ void Autoencoder::restore(const std::string& state) {
     network_->layers.load(layers);
     network_->adam.load(adam);
   } catch (const c10::Error& error) {
-    throw core::InputError(std::string("the state of another network: ") +
-                           error.what_without_backtrace());
+    throw core::InputError(std::string("no state of a network: ") + error.what_without_backtrace());
   }
 }
 

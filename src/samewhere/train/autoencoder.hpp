@@ -22,7 +22,8 @@ class Autoencoder {
   Autoencoder& operator=(const Autoencoder&) = delete;
   ~Autoencoder();
 
-  // One step down the gradient. Returns the mean squared error per number of the target before it.
+  // One step down the gradient. Returns the mean squared error before it, in shares of the targets'
+  // variance (TargetScale).
   double learn(const Batch& batch, double learning_rate);
   // The same error, nothing learnt.
   double error(const Batch& batch);
@@ -31,7 +32,8 @@ class Autoencoder {
 
   Encoder encoder() const;
 
-  // All that a later learn() depends on, as bytes; and back. Throws InputError on foreign bytes.
+  // All that a later learn() depends on, as bytes; and back into one of the same plan. Throws
+  // InputError on foreign bytes.
   std::string state() const;
   void restore(const std::string& state);
 

@@ -8,7 +8,7 @@
 
 namespace samewhere::train {
 
-// How one pass over the images went. Errors are mean squares per number of the target.
+// How one pass over the images went. Errors are mean squares in shares of the targets' variance.
 struct EpochFigures {
   int epoch = 0;  // from 1
   double training_error = 0.0;

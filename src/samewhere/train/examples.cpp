@@ -113,16 +113,45 @@ std::vector<float> target_of(const cv::Mat& view, Target target) {
   return {pixels.begin<float>(), pixels.end<float>()};
 }
 
-Batch make_batch(std::span<const cv::Mat> views, std::span<const int> indices, std::uint64_t seed,
-                 const Config& config) {
+TargetScale scale_of_targets(std::span<const cv::Mat> views, std::span<const int> indices,
+                             Target target) {
+  const auto length = static_cast<std::size_t>(target_length(target));
+  std::vector<double> sum(length, 0.0);
+  double sum_of_squares = 0.0;
+  for (const int index : indices) {
+    const std::vector<float> numbers = target_of(views[static_cast<std::size_t>(index)], target);
+    for (std::size_t i = 0; i < length; ++i) {
+      sum[i] += numbers[i];
+      sum_of_squares += static_cast<double>(numbers[i]) * numbers[i];
+    }
+  }
+  const auto count = static_cast<double>(indices.size());
+  TargetScale scale;
+  double variance = sum_of_squares / (count * static_cast<double>(length));
+  for (const double number : sum) {
+    const double mean = number / count;
+    scale.mean.push_back(static_cast<float>(mean));
+    variance -= mean * mean / static_cast<double>(length);
+  }
+  // views that are all alike have nothing to be scaled
+  if (variance > 1e-12) scale.deviation = static_cast<float>(std::sqrt(variance));
+  return scale;
+}
+
+ExampleMaker::ExampleMaker(const Config& config, std::span<const cv::Mat> views, TargetScale scale)
+    : config_(config), views_(views), scale_(std::move(scale)) {}
+
+Batch ExampleMaker::batch(std::span<const int> indices, std::uint64_t seed) const {
   Batch batch{.num_examples = static_cast<int>(indices.size())};
   for (const int index : indices) {
-    const cv::Mat& view = views[static_cast<std::size_t>(index)];
+    const cv::Mat& view = views_[static_cast<std::size_t>(index)];
     core::Random random(core::seed_of(seed, "distort", static_cast<std::uint64_t>(index)));
-    const cv::Mat input = distorted_input(view, config, random);
+    const cv::Mat input = distorted_input(view, config_, random);
     batch.inputs.insert(batch.inputs.end(), input.begin<float>(), input.end<float>());
-    const std::vector<float> target = target_of(view, config.target);
-    batch.targets.insert(batch.targets.end(), target.begin(), target.end());
+    const std::vector<float> target = target_of(view, config_.target);
+    for (std::size_t i = 0; i < target.size(); ++i) {
+      batch.targets.push_back((target[i] - scale_.mean[i]) / scale_.deviation);
+    }
   }
   return batch;
 }

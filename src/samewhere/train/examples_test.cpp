@@ -14,9 +14,11 @@ TEST(Examples, DependOnSeedAndImageOnly) {
   const std::vector<int> all = {0, 1, 2};
   const std::vector<int> last = {2};
   const Config config;
-  const Batch batch = make_batch(images.views, all, 11, config);
-  const Batch alone = make_batch(images.views, last, 11, config);
-  const Batch other = make_batch(images.views, last, 12, config);
+  const ExampleMaker maker(config, images.views,
+                           scale_of_targets(images.views, all, config.target));
+  const Batch batch = maker.batch(all, 11);
+  const Batch alone = maker.batch(last, 11);
+  const Batch other = maker.batch(last, 12);
   ASSERT_EQ(batch.inputs.size(), 3U * 120 * 160);
   ASSERT_EQ(batch.targets.size(), 3U * 5940);
   EXPECT_TRUE(
@@ -63,6 +65,24 @@ TEST(Examples, OnlyAWarpMovesThings) {
   }
   EXPECT_GT(farthest, 10);
   EXPECT_LE(farthest, 40) << "corners move by a quarter of the side at most";
+}
+
+// So that a network which answers nothing but the mean has an error of 1, for either target.
+TEST(Examples, ScaledTargetsHaveMeanZeroAndVarianceOne) {
+  const ImageSet images = test_images(5);
+  const std::vector<int> all = {0, 1, 2, 3, 4};
+  for (const Target target : {Target::kHog, Target::kPixels}) {
+    const ExampleMaker maker({.target = target}, images.views,
+                             scale_of_targets(images.views, all, target));
+    const std::vector<float> targets = maker.batch(all, 1).targets;
+    const auto length = static_cast<std::size_t>(target_length(target));
+    double sum_of_first = 0.0;
+    double sum_of_squares = 0.0;
+    for (std::size_t i = 0; i < targets.size(); i += length) sum_of_first += targets[i];
+    for (const float number : targets) sum_of_squares += static_cast<double>(number) * number;
+    EXPECT_NEAR(sum_of_first, 0.0, 1e-4);
+    EXPECT_NEAR(sum_of_squares / static_cast<double>(targets.size()), 1.0, 1e-4);
+  }
 }
 
 TEST(Examples, PixelsAreAReducedView) {

@@ -92,7 +92,6 @@ std::string card_text(const Job& job, const ImageSet& images, const Trainer& tra
                      {"best_epoch", quality.best.epoch},
                      {"validation",
                       {{"error", quality.best.validation_error},
-                       {"error_of_mean_target", quality.error_of_mean},
                        {"recognition", quality.recognition},
                        {"recognition_of_hog", quality.recognition_of_hog}}},
                      {"epochs", epochs_as_json(trainer.history())}};
@@ -136,7 +135,6 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer) 
   const Split& split = trainer.split();
   const Quality quality{
       .best = trainer.best_epoch(),
-      .error_of_mean = error_of_mean(images, split, job.config.target),
       .recognition = recognition(images, split, job.config,
                                  [&](const cv::Mat& input) { return runner.encode(input); }),
       .recognition_of_hog = recognition(images, split, job.config, hog_of_input)};

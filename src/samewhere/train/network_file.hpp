@@ -25,7 +25,6 @@ std::filesystem::path card_of(const std::filesystem::path& network);
 // What the finished network does on the validation views.
 struct Quality {
   EpochFigures best;
-  double error_of_mean = 0.0;
   double recognition = 0.0;
   double recognition_of_hog = 0.0;
 };

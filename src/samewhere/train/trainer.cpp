@@ -64,10 +64,11 @@ void check_settings(const std::filesystem::path& checkpoint, const std::string& 
 
 Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint)
     : config_(config),
-      images_(images),
       checkpoint_path_(std::move(checkpoint)),
       plan_(plan_network(config)),
       split_(split_by_blocks(static_cast<int>(images.views.size()), seed_of(config))),
+      examples_(config, images.views,
+                scale_of_targets(images.views, split_.training, config.target)),
       state_{.settings = settings_text(config), .images_sha256 = images.sha256},
       autoencoder_(plan_, seed_of(config)) {
   if (std::filesystem::exists(checkpoint_path_)) resume();
@@ -123,7 +124,7 @@ std::optional<double> Trainer::learn(int epoch, const std::function<void(int, in
       core::seed_of(seed_of(config_), "epoch", static_cast<std::uint64_t>(epoch));
   // pictures are distorted beside the learning
   twin::FrameWorkers<Batch> loader(static_cast<int>(batches.size()), 1, [&](int i) {
-    return make_batch(images_.views, batches[static_cast<std::size_t>(i)], seed, config_);
+    return examples_.batch(batches[static_cast<std::size_t>(i)], seed);
   });
   double sum = 0.0;
   int num_done = 0;
@@ -145,8 +146,7 @@ std::optional<double> Trainer::learn(int epoch, const std::function<void(int, in
 double Trainer::validation_error() {
   double sum = 0.0;
   for (const std::vector<int>& indices : cut(split_.validation, config_.batch)) {
-    const Batch batch = make_batch(images_.views, indices,
-                                   core::seed_of(seed_of(config_), "validation", 0), config_);
+    const Batch batch = examples_.batch(indices, core::seed_of(seed_of(config_), "validation", 0));
     sum += batch.num_examples * autoencoder_.error(batch);
   }
   return sum / static_cast<double>(split_.validation.size());

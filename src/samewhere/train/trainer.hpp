@@ -45,10 +45,10 @@ class Trainer {
   double validation_error();
 
   Config config_;
-  const ImageSet& images_;
   std::filesystem::path checkpoint_path_;
   NetworkPlan plan_;
   Split split_;
+  ExampleMaker examples_;
   Checkpoint state_;
   Autoencoder autoencoder_;
 };

@@ -97,6 +97,8 @@ TEST_F(Training, OnAFullDiskTheLastCheckpointSurvives) {
   EXPECT_THAT(complaint([&] { trainer.run_epoch([](int, int) {}); }),
               testing::AllOf(HasSubstr("checkpoint"), HasSubstr("cannot be written")));
   EXPECT_TRUE(core::read_file(path("checkpoint")) == last);
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_FSIZE, &limit);
 }
 
 TEST_F(Training, EndsWhenValidationGetsNoBetter) {
@@ -121,7 +123,6 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   run_epochs(trainer, 4);
   const Quality quality = write_network(job, images_, trainer);
   EXPECT_FALSE(std::filesystem::exists(checkpoint_of(job.out)));
-  EXPECT_GT(quality.error_of_mean, 0.0);
   EXPECT_GE(quality.recognition, 0.0);
   EXPECT_LE(quality.recognition, 1.0);
 

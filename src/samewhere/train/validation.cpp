@@ -56,24 +56,4 @@ std::vector<float> hog_of_input(const cv::Mat& input) {
   return describe::hog(small, hog.cell_px, hog.weak_gradient);
 }
 
-double error_of_mean(const ImageSet& images, const Split& split, Target target) {
-  std::vector<double> mean(static_cast<std::size_t>(target_length(target)), 0.0);
-  const auto target_at = [&](int index) {
-    return target_of(images.views[static_cast<std::size_t>(index)], target);
-  };
-  for (const int index : split.training) {
-    const std::vector<float> numbers = target_at(index);
-    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += numbers[i];
-  }
-  for (double& number : mean) number /= static_cast<double>(split.training.size());
-  double sum = 0.0;
-  for (const int index : split.validation) {
-    const std::vector<float> numbers = target_at(index);
-    for (std::size_t i = 0; i < mean.size(); ++i) {
-      sum += (numbers[i] - mean[i]) * (numbers[i] - mean[i]);
-    }
-  }
-  return sum / static_cast<double>(mean.size() * split.validation.size());
-}
-
 }  // namespace samewhere::train

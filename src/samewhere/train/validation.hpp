@@ -24,8 +24,4 @@ double recognition(const ImageSet& images, const Split& split, const Config& con
 // What recognition is measured against: the HOG descriptor (describe.method: hog) of the input.
 std::vector<float> hog_of_input(const cv::Mat& input);
 
-// Mean squared error on the validation views of one answer for all: the mean of the training
-// targets. What a network that has learnt nothing reaches.
-double error_of_mean(const ImageSet& images, const Split& split, Target target);
-
 }  // namespace samewhere::train
