@@ -27,6 +27,15 @@ TEST_F(Commands, HelpShowsAnExampleOfEach) {
   EXPECT_NE(run("--version").out.find("samewhere 0."), std::string::npos);
 }
 
+TEST_F(Commands, TrainSaysHowToBuildItWhereItIsMissing) {
+  std::filesystem::copy_file(SAMEWHERE_PROGRAM, path("samewhere"));
+  const std::string lonely =
+      "'" + path("samewhere").string() + "' train --help 2>'" + path("err.txt").string() + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(lonely.c_str())), 2);
+  const std::string complaint = core::read_file(path("err.txt"));
+  EXPECT_NE(complaint.find("./run train"), std::string::npos) << complaint;
+}
+
 TEST_F(Commands, ConfigPrintsWhatConfigReads) {
   const Outcome printed = run("config --profile paper --set verify.min_inliers=77");
   ASSERT_EQ(printed.exit_code, 0);

@@ -71,7 +71,7 @@ std::string name_of(const path& source) {
 
 }  // namespace
 
-std::unique_ptr<core::Source> open_source(const path& source, const Config& config) {
+Recording read_recording(const path& source, const Config& config) {
   check_config(config);
   if (!is_there(source)) {
     throw InputError(source.string() +
@@ -80,7 +80,11 @@ std::unique_ptr<core::Source> open_source(const path& source, const Config& conf
   Recording recording = is_folder(source) ? read_folder(source, config) : read_list(source, config);
   if (!config.camera.empty()) recording.camera_file = config.camera;
   if (config.depth_factor > 0.0) recording.depth_units_per_m = config.depth_factor;
-  return std::make_unique<FileSource>(name_of(source), std::move(recording));
+  return recording;
+}
+
+std::unique_ptr<core::Source> open_source(const path& source, const Config& config) {
+  return std::make_unique<FileSource>(name_of(source), read_recording(source, config));
 }
 
 }  // namespace samewhere::input

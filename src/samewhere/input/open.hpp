@@ -5,6 +5,7 @@
 
 #include <samewhere/core/source.hpp>
 #include <samewhere/input/config.hpp>
+#include <samewhere/input/recording.hpp>
 
 namespace samewhere::input {
 
@@ -14,5 +15,8 @@ namespace samewhere::input {
 // image is reported by next().
 std::unique_ptr<core::Source> open_source(const std::filesystem::path& source,
                                           const Config& config);
+
+// Where its pictures lie, for whoever reads them in another way. Throws InputError as above.
+Recording read_recording(const std::filesystem::path& source, const Config& config);
 
 }  // namespace samewhere::input

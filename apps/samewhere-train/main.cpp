@@ -1,0 +1,233 @@
+// samewhere-train: trains the network that describes a view. `samewhere train` starts it.
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <malloc.h>
+#include <opencv2/core/utility.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/progress.hpp>
+#include <samewhere/core/stage_thread.hpp>
+#include <samewhere/train/commit.hpp>
+#include <samewhere/train/network_file.hpp>
+
+namespace samewhere::train {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kBadInput = 2;
+constexpr int kBrokenPromise = 3;
+constexpr int kInterrupted = 130;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  samewhere train --images photos twin:hotel?seed=7 --out models/mine.onnx\n"
+    "  samewhere train --images gallery.txt --out small.onnx --code-size 266 --epochs 20\n"
+    "  samewhere train --images photos --out pixels.onnx --target pixels --warp off\n"
+    "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
+    "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
+
+// One option for each setting, named by it: learning_rate is --learning-rate. What was given is
+// kept as text, so that the settings' own reader checks it.
+class OptionMaker : public core::FieldVisitor {
+ public:
+  OptionMaker(CLI::App& app, std::map<std::string, std::string>& given)
+      : app_(app), given_(given) {}
+
+ protected:
+  void value(std::string_view name, bool& field, const core::FieldInfo& info) override {
+    add(name, field ? "on" : "off", info);
+  }
+  void value(std::string_view name, int& field, const core::FieldInfo& info) override {
+    add(name, std::to_string(field), info);
+  }
+  void value(std::string_view name, double& field, const core::FieldInfo& info) override {
+    add(name, fmt::format("{}", field), info);
+  }
+  void value(std::string_view name, std::string& field, const core::FieldInfo& info) override {
+    add(name, field, info);
+  }
+  void choice(std::string_view name, int& field, const core::FieldInfo& info) override {
+    add(name, std::string(info.choices[static_cast<std::size_t>(field)]), info);
+  }
+  bool enter(std::string_view /*name*/, const core::FieldInfo& /*info*/) override { return true; }
+  void leave() override {}
+
+ private:
+  void add(std::string_view name, const std::string& usual, const core::FieldInfo& info) {
+    std::string option = "--" + std::string(name);
+    for (char& c : option) {
+      if (c == '_') c = '-';
+    }
+    const std::string choices =
+        info.choices.empty() ? "" : fmt::format(" ({})", fmt::join(info.choices, ", "));
+    const auto keep = [&given = given_, key = std::string(name)](const std::string& text) {
+      given[key] = text;
+    };
+    app_.add_option_function<std::string>(option, keep, std::string(info.help) + choices)
+        ->default_str(usual);
+  }
+
+  CLI::App& app_;
+  std::map<std::string, std::string>& given_;
+};
+
+// One line, whatever the library put into the message.
+int complain(std::string message, int exit_code) {
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::fputs(("samewhere: " + message + "\n").c_str(), stderr);
+  return exit_code;
+}
+
+std::string as_typed(int argc, char** argv) {
+  std::string command = "samewhere train";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool is_plain = word.find_first_of(" ?&*'\"$()") == std::string::npos && !word.empty();
+    command += is_plain ? " " + word : " '" + word + "'";
+  }
+  return command;
+}
+
+// What would be found out only after hours.
+void check_out(const std::filesystem::path& out) {
+  if (out.extension() != ".onnx") {
+    throw core::InputError(
+        fmt::format("--out {}: expected a file name that ends in .onnx", out.string()));
+  }
+  if (std::filesystem::exists(out) && !std::filesystem::exists(checkpoint_of(out))) {
+    throw core::InputError(
+        fmt::format("--out {}: is there already, expected a name that is free", out.string()));
+  }
+  core::make_writable_folder(std::filesystem::absolute(out).parent_path());
+}
+
+ImageSet read(const Job& job) {
+  std::string current;
+  std::optional<core::Progress> progress;
+  ImageSet images =
+      read_images(job.images, job.config, [&](const std::string& source, int done, int total) {
+        if (source != current) progress.emplace("reading " + source, total);
+        current = source;
+        progress->update(done);
+      });
+  progress.reset();
+  for (const SourceCount& source : images.sources) {
+    fmt::print("{}: {} images", source.source, source.num_images);
+    if (source.num_unreadable > 0)
+      fmt::print(", {} unreadable ones skipped", source.num_unreadable);
+    fmt::print("\n");
+  }
+  return images;
+}
+
+// False if it was interrupted.
+bool run_epoch(Trainer& trainer, int num_epochs) {
+  const int epoch = static_cast<int>(trainer.history().size()) + 1;
+  const auto start = std::chrono::steady_clock::now();
+  core::Progress progress(fmt::format("epoch {}/{}: images", epoch, num_epochs),
+                          static_cast<int>(trainer.split().training.size()));
+  const auto figures = trainer.run_epoch([&](int done, int) { progress.update(done); });
+  progress.finish();
+  if (!figures) return false;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const bool is_best = trainer.best_epoch().epoch == epoch;
+  fmt::print("epoch {}/{}: loss {:.4f} training, {:.4f} validation{}, {:.1f} images/s\n", epoch,
+             num_epochs, figures->training_error, figures->validation_error,
+             is_best ? " (best)" : "",
+             static_cast<double>(trainer.split().training.size()) / elapsed.count());
+  std::fflush(stdout);
+  return true;
+}
+
+int interrupted(const Trainer& trainer) {
+  fmt::print(stderr, "samewhere: interrupted after epoch {}; the same command goes on from there\n",
+             trainer.history().size());
+  return kInterrupted;
+}
+
+int train(const Job& job) {
+  check_out(job.out);
+  const ImageSet images = read(job);
+  if (core::is_interrupted()) return kInterrupted;
+  Trainer trainer(job.config, images, checkpoint_of(job.out));
+  fmt::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
+             trainer.split().validation.size());
+  if (!trainer.history().empty()) fmt::print("going on after epoch {}\n", trainer.history().size());
+  while (!trainer.is_done()) {
+    if (core::is_interrupted() || !run_epoch(trainer, job.config.epochs))
+      return interrupted(trainer);
+  }
+  const Quality quality = write_network(job, images, trainer);
+  fmt::print(
+      "{}: epoch {}, validation loss {:.4f}, recognition of warped views {:.1f} % (HOG {:.1f} %)\n",
+      job.out.string(), quality.best.epoch, quality.best.validation_error,
+      100.0 * quality.recognition, 100.0 * quality.recognition_of_hog);
+  return kDone;
+}
+
+void use_threads(int num_threads) {
+  set_num_threads(num_threads > 0 ? num_threads : core::num_hardware_threads());
+  // the network's memory comes and goes with every step: kept, it need not be cleared each time
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  const std::string advice = advice_on_linear_algebra();
+  if (!advice.empty()) spdlog::warn("{}", advice);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Train the network that describes a view, and export it to ONNX", "samewhere train");
+  Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION, .commit = kCommit};
+  app.add_option("--images", job.images,
+                 "recordings, folders of images, lists of images, twin:PRESET?seed=3")
+      ->required();
+  app.add_option("--out", job.out, "FILE.onnx, a name that is free")->required();
+  std::map<std::string, std::string> given;
+  OptionMaker make_options(app, given);
+  visit_fields(job.config, make_options);
+  app.footer(kExamples);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return complain(std::string(error.what()) + " (see samewhere train --help)", kBadInput);
+  }
+  for (const auto& [key, text] : given) core::set_config(job.config, key + "=" + text);
+  core::catch_interrupts();
+  use_threads(job.config.threads);
+  return train(job);
+}
+
+}  // namespace
+}  // namespace samewhere::train
+
+int main(int argc, char** argv) {
+  using namespace samewhere;
+  cv::setNumThreads(1);
+  spdlog::set_default_logger(spdlog::stderr_logger_st("samewhere"));
+  spdlog::set_pattern("%n: %l: %v");
+  try {
+    return train::run(argc, argv);
+  } catch (const core::InputError& error) {
+    return train::complain(error.what(), train::kBadInput);
+  } catch (const std::exception& error) {
+    return train::complain(std::string("this is a bug of ours: ") + error.what(),
+                           train::kBrokenPromise);
+  }
+}

@@ -1,0 +1,70 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/input/test_folder.hpp>
+#include <samewhere/train/autoencoder.hpp>
+#include <samewhere/train/network_file.hpp>
+#include <samewhere/train/test_images.hpp>
+
+namespace samewhere::train {
+namespace {
+
+Batch batch_of(const ImageSet& images, const Config& config, std::uint64_t seed) {
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(images.views.size()); ++i) all.push_back(i);
+  return ExampleMaker(config, images.views, scale_of_targets(images.views, all, config.target))
+      .batch(all, seed);
+}
+
+TEST(NetworkPlan, ACodeThatNoLayerGivesIsRefused) {
+  const auto refused = input::complaint([] { plan_network({.code_size = 1000}); });
+  EXPECT_THAT(refused, testing::HasSubstr("code_size = 1000"));
+  EXPECT_THAT(refused, testing::HasSubstr("798 or 1064"));
+}
+
+// For all sizes of input: the length of the code is the planned one, and OpenCV, reading the
+// exported file, gives the trained network's code to 1e-5 of its largest number.
+TEST(Autoencoder, ExportsWhatItHasLearnt) {
+  set_num_threads(1);
+  const ImageSet images = test_images(4);
+  for (const InputSize size : {InputSize::k120x160, InputSize::k180x240, InputSize::k360x480}) {
+    SCOPED_TRACE(static_cast<int>(size));
+    const Config config{.input_size = size, .code_size = 532, .channels = 6};
+    Autoencoder autoencoder(plan_network(config), 1);
+    // the statistics of the normalisation leave their first values
+    for (std::uint64_t i = 0; i < 5; ++i) autoencoder.learn(batch_of(images, config, i), 1e-2);
+    const cv::Mat input = encoder_input(images.views[0], size);
+    EXPECT_EQ(autoencoder.encode({input.ptr<float>(), input.total()}).size(), 532U);
+    const double error = export_error(autoencoder, images, config);
+    EXPECT_LT(error, 1e-5);
+    EXPECT_GT(error, 0.0) << "two different implementations were compared";
+  }
+}
+
+TEST(Autoencoder, LearnsAndRestoredGoesOnWithTheSameBits) {
+  set_num_threads(1);
+  const ImageSet images = test_images(6);
+  const Config config = test_config();
+  const NetworkPlan plan = plan_network(config);
+  const Batch batch = batch_of(images, config, 3);
+  Autoencoder first(plan, 1);
+  const double before = first.learn(batch, 1e-2);
+  EXPECT_NEAR(before, 1.0, 0.01) << "nothing learnt, nothing known";
+  for (int i = 0; i < 20; ++i) first.learn(batch, 1e-2);
+  EXPECT_LT(first.learn(batch, 1e-2), 0.5);
+
+  Autoencoder second(plan, 2);
+  EXPECT_NE(second.error(batch), first.error(batch));
+  second.restore(first.state());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(first.learn(batch, 1e-3), second.learn(batch, 1e-3));
+  EXPECT_EQ(parameters_of(first.encoder()), parameters_of(second.encoder()));
+  EXPECT_EQ(first.error(batch), second.error(batch));
+}
+
+TEST(Autoencoder, BytesThatAreNoStateAreRefused) {
+  Autoencoder autoencoder(plan_network(test_config()), 1);
+  EXPECT_NE(input::complaint([&] { autoencoder.restore("no state"); }), "no error");
+}
+
+}  // namespace
+}  // namespace samewhere::train

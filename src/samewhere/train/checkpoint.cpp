@@ -1,0 +1,116 @@
+#include <cstddef>
+#include <cstring>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/train/checkpoint.hpp>
+#include <samewhere/train/sha256.hpp>
+
+namespace samewhere::train {
+namespace {
+
+using core::InputError;
+using nlohmann::json;
+
+constexpr const char* kFormat = "samewhere training 1";
+
+std::size_t num_weights(const ConvolutionPlan& plan) {
+  return static_cast<std::size_t>(plan.num_outputs) * static_cast<std::size_t>(plan.num_inputs) *
+         static_cast<std::size_t>(plan.kernel_px * plan.kernel_px);
+}
+
+[[noreturn]] void fail(const std::filesystem::path& path, std::string_view why) {
+  throw InputError(
+      fmt::format("{}: {}, expected the checkpoint of a training; remove it to begin anew",
+                  path.string(), why));
+}
+
+Checkpoint from_header(const json& header) {
+  Checkpoint checkpoint{.settings = header.at("settings"),
+                        .images_sha256 = header.at("images_sha256")};
+  for (const json& row : header.at("history")) {
+    checkpoint.history.push_back({row.at(0), row.at(1), row.at(2)});
+  }
+  return checkpoint;
+}
+
+}  // namespace
+
+// The file: one line of JSON, then the two blocks of bytes whose lengths and checksum it gives.
+void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  std::string blocks = checkpoint.autoencoder;
+  blocks.append(reinterpret_cast<const char*>(checkpoint.best_parameters.data()),
+                checkpoint.best_parameters.size() * sizeof(float));
+  json history = json::array();
+  for (const EpochFigures& epoch : checkpoint.history) {
+    history.push_back({epoch.epoch, epoch.training_error, epoch.validation_error});
+  }
+  const json header = {{"format", kFormat},
+                       {"settings", checkpoint.settings},
+                       {"images_sha256", checkpoint.images_sha256},
+                       {"history", history},
+                       {"num_autoencoder_bytes", checkpoint.autoencoder.size()},
+                       {"num_best_parameters", checkpoint.best_parameters.size()},
+                       {"sha256", sha256_of(blocks)}};
+  core::write_file(path, header.dump() + "\n" + blocks);
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path) {
+  const std::string content = core::read_file(path);
+  const std::size_t end = content.find('\n');
+  const json header = json::parse(content.substr(0, end), nullptr, false);
+  if (!header.is_object() || header.value("format", "") != kFormat) {
+    fail(path, "is of another format");
+  }
+  try {
+    const std::string_view blocks = std::string_view(content).substr(end + 1);
+    const auto num_bytes = header.at("num_autoencoder_bytes").get<std::size_t>();
+    const auto num_parameters = header.at("num_best_parameters").get<std::size_t>();
+    if (sha256_of(blocks) != header.at("sha256").get<std::string>() ||
+        blocks.size() != num_bytes + num_parameters * sizeof(float)) {
+      fail(path, "is damaged or cut short");
+    }
+    Checkpoint checkpoint = from_header(header);
+    checkpoint.autoencoder = blocks.substr(0, num_bytes);
+    checkpoint.best_parameters.resize(num_parameters);
+    std::memcpy(checkpoint.best_parameters.data(), blocks.data() + num_bytes,
+                num_parameters * sizeof(float));
+    return checkpoint;
+  } catch (const json::exception&) {
+    fail(path, "is damaged");
+  }
+}
+
+std::vector<float> parameters_of(const Encoder& encoder) {
+  std::vector<float> parameters;
+  for (const Convolution& convolution : encoder.convolutions) {
+    parameters.insert(parameters.end(), convolution.weights.begin(), convolution.weights.end());
+    parameters.insert(parameters.end(), convolution.biases.begin(), convolution.biases.end());
+  }
+  return parameters;
+}
+
+Encoder encoder_with(const NetworkPlan& plan, const std::vector<float>& parameters) {
+  Encoder encoder{.input_px = plan.input_px};
+  auto next = parameters.begin();
+  const auto take = [&](std::size_t count) {
+    core::require(count <= static_cast<std::size_t>(parameters.end() - next),
+                  "the parameters are those of the plan");
+    const auto first = next;
+    next += static_cast<std::ptrdiff_t>(count);
+    return std::vector<float>(first, next);
+  };
+  for (const ConvolutionPlan& convolution : plan.convolutions) {
+    std::vector<float> weights = take(num_weights(convolution));
+    std::vector<float> biases = take(static_cast<std::size_t>(convolution.num_outputs));
+    encoder.convolutions.push_back({convolution, std::move(weights), std::move(biases)});
+  }
+  core::require(next == parameters.end(), "the parameters are those of the plan");
+  return encoder;
+}
+
+}  // namespace samewhere::train

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <samewhere/train/network_plan.hpp>
+
+namespace samewhere::train {
+
+// How one pass over the images went. Errors are mean squares in shares of the targets' variance.
+struct EpochFigures {
+  int epoch = 0;  // from 1
+  double training_error = 0.0;
+  double validation_error = 0.0;
+};
+
+// All that a training needs to go on as if it had never stopped. Random numbers are drawn by seed,
+// epoch and image, so that `history` stands for their state too.
+struct Checkpoint {
+  std::string settings;  // YAML; a training with others is another training
+  std::string images_sha256;
+  std::vector<EpochFigures> history;
+  std::string autoencoder;             // Autoencoder::state() after the last epoch
+  std::vector<float> best_parameters;  // of the encoder with the least validation error
+};
+
+// Writes the whole file or nothing. Throws InputError: no space, no permission.
+void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
+// Throws InputError if the file is no checkpoint or damaged.
+Checkpoint read_checkpoint(const std::filesystem::path& path);
+
+// All weights and biases of an encoder in a row; and back into one of the same plan.
+std::vector<float> parameters_of(const Encoder& encoder);
+Encoder encoder_with(const NetworkPlan& plan, const std::vector<float>& parameters);
+
+}  // namespace samewhere::train

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/train/config.hpp>
+
+namespace samewhere::train {
+
+// So many inputs one after the other, and what is to be made of each.
+struct Batch {
+  int num_examples = 0;
+  std::vector<float> inputs;   // num_examples x rows x columns, in [0, 1]
+  std::vector<float> targets;  // num_examples x target_length(), scaled
+};
+
+cv::Size input_size_px(InputSize size);
+int target_length(Target target);
+
+// The view as the encoder sees it in use: reduced by averaging, 32-bit float in [0, 1]. `view` is
+// 8-bit grey and equalised (describe::preprocess).
+cv::Mat encoder_input(const cv::Mat& view, InputSize size);
+
+// The view from somewhere else, in other light, by another camera: see README.md. Same form.
+cv::Mat distorted_input(const cv::Mat& view, const Config& config, core::Random& random);
+
+// What is to be made of the distorted view: of the undistorted one its HOG (describe::hog, 12 x 16
+// cells), or its pixels, 60 x 80.
+std::vector<float> target_of(const cv::Mat& view, Target target);
+
+// What targets are like on average. The network learns (target - mean) / deviation, so that its
+// mean squared error is the share of the targets' variance that it cannot tell: 1 for one that has
+// learnt nothing, whatever the kind of target.
+struct TargetScale {
+  std::vector<float> mean;  // of each number
+  float deviation = 1.0F;   // standard deviation from it, over all numbers
+};
+
+// Of the views `indices`, at least one.
+TargetScale scale_of_targets(std::span<const cv::Mat> views, std::span<const int> indices,
+                             Target target);
+
+// Makes batches of some views.
+class ExampleMaker {
+ public:
+  // `views` must outlive it.
+  ExampleMaker(const Config& config, std::span<const cv::Mat> views, TargetScale scale);
+
+  // Distorted views `indices` and their scaled targets. View i is distorted as `seed` and i say.
+  Batch batch(std::span<const int> indices, std::uint64_t seed) const;
+
+ private:
+  Config config_;
+  std::span<const cv::Mat> views_;
+  TargetScale scale_;
+};
+
+}  // namespace samewhere::train

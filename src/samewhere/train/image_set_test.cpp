@@ -1,0 +1,89 @@
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/input/test_folder.hpp>
+#include <samewhere/train/image_set.hpp>
+#include <samewhere/train/test_images.hpp>
+
+namespace samewhere::train {
+namespace {
+
+using input::complaint;
+using testing::HasSubstr;
+
+ImageSet read(const std::vector<std::string>& sources, const Config& config = test_config()) {
+  return read_images(sources, config, [](const std::string&, int, int) {});
+}
+
+TEST(ImageSet, AnUnreadableImageIsSkippedAndCounted) {
+  const input::TestFolder folder;
+  folder.write_png("photos/1.png", test_picture(1));
+  folder.write_png("photos/2.png", test_picture(2));
+  folder.cut("photos/2.png", 0.5);
+  folder.write("photos/3.jpg", "no picture");
+  folder.write_png("photos/4.png", test_picture(4, {100, 300}));  // another size is no harm
+  const ImageSet images = read({folder.at("photos").string()});
+  ASSERT_EQ(images.sources.size(), 1U);
+  EXPECT_EQ(images.sources[0].num_images, 2);
+  EXPECT_EQ(images.sources[0].num_unreadable, 2);
+  ASSERT_EQ(images.views.size(), 2U);
+  EXPECT_EQ(images.views[1].size(), cv::Size(320, 240));
+}
+
+TEST(ImageSet, WhatGivesNoImageIsNamed) {
+  const input::TestFolder folder;
+  std::filesystem::create_directories(folder.root() / "empty");
+  EXPECT_THAT(complaint([&] { read({(folder.root() / "empty").string()}); }), HasSubstr("empty"));
+  EXPECT_THAT(complaint([&] { read({(folder.root() / "none").string()}); }), HasSubstr("none"));
+  folder.write("broken/1.png", "no picture");
+  EXPECT_THAT(complaint([&] { read({folder.at("broken").string()}); }),
+              testing::AllOf(HasSubstr("broken"), HasSubstr("can be read")));
+  folder.write_png("single/1.png", test_picture(1));
+  EXPECT_THAT(complaint([&] { read({folder.at("single").string()}); }), HasSubstr("at least 2"));
+  EXPECT_THAT(complaint([&] { read({"twin:nowhere"}); }), HasSubstr("nowhere"));
+}
+
+TEST(ImageSet, TheChecksumTellsPixelsApart) {
+  const input::TestFolder folder;
+  for (int i = 0; i < 3; ++i) {
+    folder.write_png("a/" + std::to_string(i) + ".png", test_picture(i));
+    folder.write_png("b/" + std::to_string(i) + ".png", test_picture(i + 1));
+  }
+  const std::string a = folder.at("a").string();
+  EXPECT_EQ(read({a}).sha256, read({a}).sha256);
+  EXPECT_NE(read({a}).sha256, read({folder.at("b").string()}).sha256);
+}
+
+TEST(ImageSet, ARenderedWalkGivesEachNthFrame) {
+  Config config = test_config();
+  config.twin_step = 400;
+  const ImageSet images = read({"twin:office-loop?seed=3"}, config);
+  ASSERT_GE(images.views.size(), 2U);
+  EXPECT_GT(cv::norm(images.views[0], images.views[1], cv::NORM_L1), 0.0);
+}
+
+TEST(Split, HoldsBackWholeBlocksAndAboutATenth) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    constexpr int kNumImages = 3210;
+    const Split split = split_by_blocks(kNumImages, seed);
+    EXPECT_EQ(split.training.size() + split.validation.size(), kNumImages);
+    EXPECT_NEAR(static_cast<double>(split.validation.size()) / kNumImages, 0.1, 0.02);
+    std::set<int> blocks;
+    for (const int index : split.validation) blocks.insert(index / 32);
+    for (const int index : split.training) EXPECT_EQ(blocks.count(index / 32), 0U) << index;
+  }
+}
+
+TEST(Split, OfAFewImagesLeavesSomeOnBothSides) {
+  for (int num_images = 2; num_images < 60; ++num_images) {
+    const Split split = split_by_blocks(num_images, 7);
+    EXPECT_FALSE(split.training.empty()) << num_images;
+    EXPECT_FALSE(split.validation.empty()) << num_images;
+  }
+}
+
+}  // namespace
+}  // namespace samewhere::train

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <samewhere/train/autoencoder.hpp>
+#include <samewhere/train/checkpoint.hpp>
+#include <samewhere/train/config.hpp>
+#include <samewhere/train/image_set.hpp>
+
+namespace samewhere::train {
+
+// Trains one autoencoder, epoch by epoch, until `epochs` are done or `patience` of them have not
+// lowered the validation error. After each epoch all is written to a checkpoint.
+class Trainer {
+ public:
+  // Goes on from the checkpoint if there is one. Throws InputError if it belongs to other settings
+  // (naming the first) or other images. `images` must outlive the trainer.
+  Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint);
+
+  const NetworkPlan& plan() const { return plan_; }
+  const Split& split() const { return split_; }
+  const std::vector<EpochFigures>& history() const { return state_.history; }
+  bool is_done() const;
+  // As the last epoch left it.
+  Autoencoder& autoencoder() { return autoencoder_; }
+
+  // One pass over the images, told to `on_progress` (images done, images in all). Nothing if
+  // core::is_interrupted() ended it after a batch: what it learnt is lost, the epochs before are in
+  // the checkpoint. Throws InputError if the checkpoint cannot be written or the loss is no longer
+  // finite.
+  std::optional<EpochFigures> run_epoch(const std::function<void(int, int)>& on_progress);
+
+  // The epoch with the least validation error so far, and its encoder. At least one epoch is done.
+  EpochFigures best_epoch() const;
+  Encoder best_encoder() const;
+
+ private:
+  void resume();
+  double learning_rate(int epoch) const;
+  std::vector<std::vector<int>> training_batches(int epoch) const;
+  std::optional<double> learn(int epoch, const std::function<void(int, int)>& on_progress);
+  double validation_error();
+
+  Config config_;
+  std::filesystem::path checkpoint_path_;
+  NetworkPlan plan_;
+  Split split_;
+  ExampleMaker examples_;
+  Checkpoint state_;
+  Autoencoder autoencoder_;
+};
+
+}  // namespace samewhere::train

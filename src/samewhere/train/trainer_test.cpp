@@ -1,0 +1,141 @@
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include <samewhere/core/file.hpp>
+#include <samewhere/input/test_folder.hpp>
+#include <samewhere/train/network_file.hpp>
+#include <samewhere/train/onnx_runner.hpp>
+#include <samewhere/train/sha256.hpp>
+#include <samewhere/train/test_images.hpp>
+
+namespace samewhere::train {
+namespace {
+
+using input::complaint;
+using testing::HasSubstr;
+
+void run_epochs(Trainer& trainer, int num_epochs) {
+  for (int i = 0; i < num_epochs; ++i) ASSERT_TRUE(trainer.run_epoch([](int, int) {}));
+}
+
+class Training : public testing::Test {
+ protected:
+  Training() { set_num_threads(1); }
+
+  std::filesystem::path path(const std::string& name) const { return folder_.at(name); }
+
+  input::TestFolder folder_;
+  ImageSet images_ = test_images(24);
+};
+
+TEST_F(Training, StoppedAfterTwoEpochsAndResumedIsTheSameToTheLastBit) {
+  Trainer whole(test_config(), images_, path("whole"));
+  run_epochs(whole, 4);
+  {
+    Trainer first(test_config(), images_, path("parts"));
+    run_epochs(first, 2);
+  }
+  Trainer second(test_config(), images_, path("parts"));
+  ASSERT_EQ(second.history().size(), 2U);
+  run_epochs(second, 2);
+  EXPECT_TRUE(second.is_done());
+  EXPECT_EQ(parameters_of(whole.autoencoder().encoder()),
+            parameters_of(second.autoencoder().encoder()));
+  EXPECT_EQ(parameters_of(whole.best_encoder()), parameters_of(second.best_encoder()));
+  EXPECT_EQ(whole.history()[3].validation_error, second.history()[3].validation_error);
+}
+
+TEST_F(Training, GoesOnWithTheSameSettingsAndImagesOnly) {
+  {
+    Trainer first(test_config(), images_, path("checkpoint"));
+    run_epochs(first, 1);
+  }
+  Config other = test_config();
+  other.batch = 8;
+  const auto refused = complaint([&] { Trainer(other, images_, path("checkpoint")); });
+  EXPECT_THAT(refused, HasSubstr("checkpoint"));
+  EXPECT_THAT(refused, HasSubstr("batch: 4"));
+  EXPECT_THAT(refused, HasSubstr("batch: 8"));
+  ImageSet others = images_;
+  others.sha256 = "of others";
+  EXPECT_THAT(complaint([&] { Trainer(test_config(), others, path("checkpoint")); }),
+              HasSubstr("other images"));
+  other = test_config();
+  other.threads = 2;
+  EXPECT_EQ(complaint([&] { Trainer(other, images_, path("checkpoint")); }), "no error");
+}
+
+TEST_F(Training, ADamagedCheckpointIsRefused) {
+  {
+    Trainer first(test_config(), images_, path("checkpoint"));
+    run_epochs(first, 1);
+  }
+  std::string bytes = core::read_file(path("checkpoint"));
+  bytes[bytes.size() - 100] = static_cast<char>(bytes[bytes.size() - 100] ^ 1);
+  folder_.write("flipped", bytes);
+  folder_.cut("checkpoint", 0.7);
+  folder_.write("foreign", "a shopping list");
+  for (const std::string name : {"checkpoint", "flipped", "foreign"}) {
+    EXPECT_THAT(complaint([&] { Trainer(test_config(), images_, path(name)); }), HasSubstr(name));
+  }
+}
+
+// A limit on the size of files stands for a full disk.
+TEST_F(Training, OnAFullDiskTheLastCheckpointSurvives) {
+  Trainer trainer(test_config(), images_, path("checkpoint"));
+  run_epochs(trainer, 1);
+  const std::string last = core::read_file(path("checkpoint"));
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  limit.rlim_cur = last.size() / 2;
+  setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_THAT(complaint([&] { trainer.run_epoch([](int, int) {}); }),
+              testing::AllOf(HasSubstr("checkpoint"), HasSubstr("cannot be written")));
+  EXPECT_TRUE(core::read_file(path("checkpoint")) == last);
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+TEST_F(Training, EndsWhenValidationGetsNoBetter) {
+  Config config = test_config();
+  config.epochs = 50;
+  config.patience = 2;
+  config.learning_rate = 1.0;  // far too much: it jumps about
+  Trainer trainer(config, images_, path("checkpoint"));
+  while (!trainer.is_done()) run_epochs(trainer, 1);
+  EXPECT_LT(trainer.history().size(), 50U);
+  EXPECT_EQ(static_cast<int>(trainer.history().size()), trainer.best_epoch().epoch + 2);
+}
+
+TEST_F(Training, LeavesANetworkAndItsCard) {
+  const Job job{.images = {"pictures"},
+                .out = path("small.onnx"),
+                .config = test_config(),
+                .command = "samewhere train",
+                .version = "0",
+                .commit = "abc"};
+  Trainer trainer(job.config, images_, checkpoint_of(job.out));
+  run_epochs(trainer, 4);
+  const Quality quality = write_network(job, images_, trainer);
+  EXPECT_FALSE(std::filesystem::exists(checkpoint_of(job.out)));
+  EXPECT_GE(quality.recognition, 0.0);
+  EXPECT_LE(quality.recognition, 1.0);
+
+  const std::string network = core::read_file(job.out);
+  const auto card = nlohmann::json::parse(core::read_file(card_of(job.out)));
+  EXPECT_EQ(card["sha256"], sha256_of(network));
+  EXPECT_EQ(card["settings"]["code_size"], "266");
+  EXPECT_EQ(card["images"]["sources"][0]["num_images"], 24);
+  EXPECT_EQ(card["epochs"].size(), 4U);
+  EXPECT_EQ(card["commit"], "abc");
+  const cv::Mat input = encoder_input(images_.views[0], job.config.input_size);
+  EXPECT_EQ(OnnxRunner(network).encode(input).size(), 266U);
+}
+
+}  // namespace
+}  // namespace samewhere::train
