@@ -88,15 +88,11 @@ class Furnisher {
   void add_extinguisher(const Place& place);
   void add_cabinet(const Place& place);  // 0.9 m wide, 0.32 m deep
   void add_switch(const Place& place);
-<<<<<<< HEAD
   void add_coat_rack(const Place& place);  // 1.0 m wide, 0.24 m deep, with coats and bags
   void add_leaflets(const Place& place);   // 0.72 m x 0.92 m, 0.05 m deep
   void add_low_shelf(const Place& place);  // 0.88 m wide, 0.3 m deep, small things on it
   void add_crates(const Place& place);     // 0.5 m wide, 0.38 m deep, up to 0.9 m high
-  void add_window(const Place& place, Daylight daylight);  // 1.52 m wide, sill 0.87 m up
-=======
   void add_window(const Place& place, Daylight daylight);  // 1.6 m wide at most, sill 0.87 m up
->>>>>>> w-fabric
   void add_radiator(const Place& place);                   // 1.2 m wide, 0.12 m deep
   // Along the whole wall, 0.9 m up; higher by `rise_m` at its right end.
   void add_handrail(const Wall& wall, float rise_m = 0.0F);
