@@ -47,12 +47,8 @@ class Layers : public torch::nn::Module {
       const std::string number = std::to_string(convolutions_.size() + 1);
       convolutions_.push_back(
           register_module("convolution" + number, torch::nn::Conv2d(options_of(convolution))));
-      // the code itself is not scaled again: all of its channels count alike
-      const bool is_code = convolutions_.size() == plan.convolutions.size();
-      norms_.push_back(register_module(
-          "norm" + number,
-          torch::nn::BatchNorm2d(
-              torch::nn::BatchNorm2dOptions(convolution.num_outputs).affine(!is_code))));
+      norms_.push_back(
+          register_module("norm" + number, torch::nn::BatchNorm2d(convolution.num_outputs)));
     }
     decoder_ = register_module("decoder", torch::nn::Linear(plan.code_size, plan.target_size));
     // what is not known yet is not guessed: it starts from the mean target
@@ -62,26 +58,23 @@ class Layers : public torch::nn::Module {
 
   Tensor encode(Tensor x) {
     for (std::size_t i = 0; i < convolutions_.size(); ++i) {
-      x = norms_[i](convolutions_[i](x));
-      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(torch::relu(x), 2, 2);
+      x = torch::relu(norms_[i](convolutions_[i](x)));
+      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(x, 2, 2);
     }
+    x = torch::avg_pool2d(x, kCodeWindow, kCodeStep);
     return x.flatten(1);
   }
 
   Tensor forward(const Tensor& x) { return decoder_(encode(x)); }
 
-  // y = gain (W x - mean) + shift with gain = weight / sqrt(variance + epsilon) is one convolution.
+  // gain (W x - mean) + bias with gain = weight / sqrt(variance + epsilon) is one convolution.
   Convolution folded(std::size_t i) const {
     const torch::NoGradGuard no_gradient;
     const auto& norm = norms_[i];
-    Tensor gain = torch::rsqrt(norm->running_var.to(torch::kDouble) + norm->options.eps());
-    Tensor shift = torch::zeros_like(gain);
-    if (norm->options.affine()) {
-      gain = gain * norm->weight;
-      shift = norm->bias.to(torch::kDouble);
-    }
+    const Tensor gain =
+        norm->weight * torch::rsqrt(norm->running_var.to(torch::kDouble) + norm->options.eps());
     const Tensor weights = convolutions_[i]->weight * gain.view({-1, 1, 1, 1});
-    const Tensor biases = shift - gain * norm->running_mean;
+    const Tensor biases = norm->bias - gain * norm->running_mean;
     return {plan_.convolutions[i], numbers_of(weights.to(torch::kFloat)),
             numbers_of(biases.to(torch::kFloat))};
   }

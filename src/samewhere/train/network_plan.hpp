@@ -8,8 +8,8 @@
 
 namespace samewhere::train {
 
-// One convolution, square kernel. All but the last are followed by ReLU and by the maximum of each
-// 2 x 2 positions.
+// One convolution, square kernel, followed by ReLU. All but the last are followed by the maximum of
+// each 2 x 2 positions, too.
 struct ConvolutionPlan {
   int num_inputs = 0;  // channels
   int num_outputs = 0;
@@ -18,10 +18,15 @@ struct ConvolutionPlan {
   int padding_px = 0;
 };
 
+// The code is the mean of what the last convolution gives (14 x 19 positions) in windows of so many
+// positions a side, so many apart: 6 x 8 of them.
+inline constexpr int kCodeWindow = 4;
+inline constexpr int kCodeStep = 2;
+
 // The shape of the encoder, after CALC (Merrill and Huang, RSS 2018): three convolutions. The first
 // has the stride that brings any input to 62 x 82 positions, so that all later layers, their cost
-// and the code are the same whatever the size of the input. The last gives the code, 14 x 19
-// positions of code_size / 266 channels, row by row within a channel.
+// and the code are the same whatever the size of the input. The code is row by row within a
+// channel.
 struct NetworkPlan {
   cv::Size input_px;
   std::vector<ConvolutionPlan> convolutions;

@@ -75,10 +75,11 @@ void add_convolution(onnx::GraphProto& graph, Chain& chain, const std::string& n
   add_sizes(node, "pads", {padding, padding, padding, padding});
 }
 
-void add_maximum(Chain& chain, const std::string& name) {
-  onnx::NodeProto& node = chain.add("MaxPool", name);
-  add_sizes(node, "kernel_shape", {2, 2});
-  add_sizes(node, "strides", {2, 2});
+void add_pooling(Chain& chain, const std::string& type, const std::string& name, int side,
+                 int stride) {
+  onnx::NodeProto& node = chain.add(type, name);
+  add_sizes(node, "kernel_shape", {side, side});
+  add_sizes(node, "strides", {stride, stride});
 }
 
 void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
@@ -87,10 +88,10 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
   for (std::size_t i = 0; i < num_convolutions; ++i) {
     const std::string number = std::to_string(i + 1);
     add_convolution(graph, chain, "convolution" + number, encoder.convolutions[i]);
-    if (i + 1 == num_convolutions) break;
     chain.add("Relu", "relu" + number);
-    add_maximum(chain, "maximum" + number);
+    if (i + 1 < num_convolutions) add_pooling(chain, "MaxPool", "maximum" + number, 2, 2);
   }
+  add_pooling(chain, "AveragePool", "mean", kCodeWindow, kCodeStep);
   onnx::NodeProto& flatten = chain.add("Flatten", "code");
   onnx::AttributeProto& axis = *flatten.add_attribute();
   axis.set_name("axis");
