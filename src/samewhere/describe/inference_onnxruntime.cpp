@@ -65,8 +65,8 @@ class OnnxRuntimeInference : public Inference {
                                        what, error.what()));
   }
 
-  NetworkFile ends_;  // without the bytes
-  Ort::Env environment_;
+  NetworkFile ends_;                               // without the bytes
+  Ort::Env environment_{ORT_LOGGING_LEVEL_FATAL};  // what goes wrong it also throws
   Ort::Session session_{nullptr};
 };
 
@@ -76,7 +76,9 @@ std::unique_ptr<Inference> make_inference(const NetworkFile& network) {
   return std::make_unique<OnnxRuntimeInference>(network);
 }
 
-std::string inference_backend() { return "ONNX Runtime " + Ort::GetVersionString(); }
+std::string inference_backend() {
+  return std::string("ONNX Runtime ") + OrtGetApiBase()->GetVersionString();
+}
 
 }  // namespace samewhere::describe
 
