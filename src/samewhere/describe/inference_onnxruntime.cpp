@@ -23,7 +23,7 @@ Ort::SessionOptions one_thread() {
 class OnnxRuntimeInference : public Inference {
  public:
   explicit OnnxRuntimeInference(const NetworkFile& network) : ends_(network) {
-    ends_.bytes.clear();  // the session has its own copy of the weights
+    std::string().swap(ends_.bytes);  // the session has its own copy of the weights
     try {
       session_ =
           Ort::Session(environment_, network.bytes.data(), network.bytes.size(), one_thread());

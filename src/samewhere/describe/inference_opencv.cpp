@@ -30,7 +30,7 @@ class QuietOpenCv {
 class OpenCvInference : public Inference {
  public:
   explicit OpenCvInference(const NetworkFile& network) : ends_(network) {
-    ends_.bytes.clear();  // the net below has its own copy of the weights
+    std::string().swap(ends_.bytes);  // the net below has its own copy of the weights
     const QuietOpenCv quiet;
     try {
       net_ = cv::dnn::readNetFromONNX(network.bytes.data(), network.bytes.size());
@@ -39,9 +39,11 @@ class OpenCvInference : public Inference {
     } catch (const std::exception& error) {
       fail("cannot read", error);
     }
+    // what it cannot run it says here, while it is quiet
+    run(cv::Mat(ends_.input_px, CV_32FC1, cv::Scalar(0.5)));
   }
 
-  std::vector<float> run(const cv::Mat& picture) override {
+  std::vector<float> run(const cv::Mat& picture) final {
     core::require(picture.type() == CV_32FC1 && picture.size() == ends_.input_px,
                   "a network gets the picture it was made for");
     const cv::Mat code = forward(picture);
@@ -53,7 +55,6 @@ class OpenCvInference : public Inference {
 
  private:
   cv::Mat forward(const cv::Mat& picture) {
-    const QuietOpenCv quiet;
     try {
       const cv::Mat continuous = picture.isContinuous() ? picture : picture.clone();
       const std::vector<int> shape{1, 1, picture.rows, picture.cols};
