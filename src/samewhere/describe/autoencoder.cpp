@@ -56,7 +56,7 @@ class Autoencoder : public Describer {
   std::uint64_t checksum() const override { return checksum_; }
 
  private:
-  Autoencoder(const Config& config, std::filesystem::path path)
+  Autoencoder(const Config& config, const std::filesystem::path& path)
       : Autoencoder(config, read_network(path)) {}
 
   Autoencoder(const Config& config, const NetworkFile& network)
