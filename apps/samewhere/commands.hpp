@@ -18,5 +18,6 @@ void add_twin_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 void add_train_command(CLI::App& app);
+void add_doctor_command(CLI::App& app);
 
 }  // namespace samewhere::app

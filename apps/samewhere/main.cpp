@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   add_twin_command(app, exit_code);
   add_config_command(app);
   add_train_command(app);
+  add_doctor_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -18,7 +18,7 @@ class Commands : public testing::Test {
 
 TEST_F(Commands, HelpShowsAnExampleOfEach) {
   EXPECT_EQ(run("--help").exit_code, 0);
-  for (const std::string command : {"run", "loops", "eval", "twin", "config"}) {
+  for (const std::string command : {"run", "loops", "eval", "twin", "config", "doctor"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << command;
@@ -51,6 +51,25 @@ TEST_F(Commands, TheCommittedConfigFilesAreWhatTheProgramHas) {
       << "make it anew: samewhere config > configs/default.yaml";
   const std::string table = core::read_file(repository / "docs/config.md");
   EXPECT_NE(table.find(run("config --table").out), std::string::npos) << "make docs/config.md anew";
+}
+
+TEST_F(Commands, DoctorPrintsWhatAReportOfAFaultNeeds) {
+  const Outcome doctor = run("doctor");
+  ASSERT_EQ(doctor.exit_code, 0) << doctor.err;
+  for (const char* row : {"samewhere ", "build ", "OpenCV ", "Eigen ", "Ceres ", "threads ",
+                          "networks run by ", "rendered pictures ", "descriptor ", " ms "}) {
+    EXPECT_NE(doctor.out.find(row), std::string::npos) << row << "\n" << doctor.out;
+  }
+}
+
+TEST_F(Commands, DoctorNamesANetworkThatCannotBeUsedAfterWhatItKnows) {
+  core::write_file(path("net.onnx"), "no network");
+  const Outcome doctor = run("doctor --set describe.method=autoencoder --set describe.network=" +
+                             quoted(path("net.onnx")));
+  EXPECT_EQ(doctor.exit_code, 2);
+  EXPECT_NE(doctor.out.find("OpenCV"), std::string::npos);
+  EXPECT_NE(doctor.err.find("net.onnx: is cut short or no ONNX file"), std::string::npos);
+  EXPECT_EQ(std::count(doctor.err.begin(), doctor.err.end(), '\n'), 1) << doctor.err;
 }
 
 TEST_F(Commands, RunEvalAndASecondRunAgree) {

@@ -92,6 +92,31 @@ TEST(WorkerThread, DestructionWithoutJoinSwallowsTheException) {
   EXPECT_NO_THROW(WorkerThread([] { throw InputError("nobody asks"); }));
 }
 
+TEST(SourceThread, SendsWhatThereIsAndClosesTheChannel) {
+  Channel<int> numbers(2);
+  int next = 0;
+  SourceThread<int> source(numbers,
+                           [&] { return next < 50 ? std::optional(next++) : std::nullopt; });
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(numbers.receive(), i);
+  EXPECT_EQ(numbers.receive(), std::nullopt);
+  source.join();
+}
+
+TEST(SourceThread, AnExceptionClosesTheChannelAndComesOutOfJoin) {
+  Channel<int> numbers(2);
+  SourceThread<int> source(numbers, []() -> std::optional<int> { throw InputError("cut short"); });
+  EXPECT_EQ(numbers.receive(), std::nullopt);
+  EXPECT_THROW(source.join(), InputError);
+}
+
+TEST(SourceThread, DestructionDoesNotWaitForAReaderThatHasLeft) {
+  Channel<int> numbers(1);
+  {
+    const SourceThread<int> source(numbers, [] { return std::optional(1); });
+  }
+  EXPECT_FALSE(numbers.send(1));
+}
+
 TEST(StageThread, AChainOfStagesAnswersEveryMessageInOrderAndEndsWhenTheFirstChannelIsClosed) {
   Channel<int> numbers(2);
   Channel<int> squares(2);

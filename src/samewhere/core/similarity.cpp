@@ -89,12 +89,24 @@ std::vector<float> centred_unit(std::span<const float> x) {
   return unit(centred);
 }
 
+float inverse_deviation(std::span<const float> x) {
+  double sum_squared = 0.0;
+  for (const double deviation : deviations(x)) sum_squared += deviation * deviation;
+  return sum_squared > 0.0 ? static_cast<float>(1.0 / std::sqrt(sum_squared)) : 0.0F;
+}
+
 std::vector<float> unit(std::span<const float> x) {
   const double length = std::sqrt(sum_of_squares(x));
   std::vector<float> scaled(x.size(), 0.0F);
   if (length <= 0.0) return scaled;
   for (std::size_t i = 0; i < x.size(); ++i) scaled[i] = static_cast<float>(x[i] / length);
   return scaled;
+}
+
+bool is_unit_or_zero(std::span<const float> x) {
+  constexpr double kTolerance = 1e-3;
+  const double squared_length = sum_of_squares(x);
+  return squared_length == 0.0 || std::abs(squared_length - 1.0) < kTolerance;  // false on NaN
 }
 
 }  // namespace samewhere::core

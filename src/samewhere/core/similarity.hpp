@@ -22,7 +22,15 @@ double ncc(std::span<const float> x, std::span<const float> y);
 // ncc(x, y) = dot(centred_unit(x), centred_unit(y)) up to rounding.
 std::vector<float> centred_unit(std::span<const float> x);
 
+// 1 / |x - mean(x)|, or 0 if x is constant. With it an NCC costs one dot product and y keeps its
+// mean: ncc(x, y) = dot(centred_unit(x), y) * inverse_deviation(y) up to rounding.
+float inverse_deviation(std::span<const float> x);
+
 // The vector with its length made 1, or all zero if it has none.
 std::vector<float> unit(std::span<const float> x);
+
+// Whether the vector has length 1, up to the rounding of floats, or none at all; false where an
+// element is not a number.
+bool is_unit_or_zero(std::span<const float> x);
 
 }  // namespace samewhere::core

@@ -95,6 +95,27 @@ TEST(Similarity, DotOfCentredUnitVectorsIsTheNcc) {
   }
 }
 
+TEST(Similarity, TheNccNeedsOnlyOneOfTheVectorsCentred) {
+  for (int seed = 0; seed < kNumSeeds; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    const std::size_t size = 2 + random.index(60);
+    const auto x = random_vector(random, size);
+    const auto y = unit(scaled(random_vector(random, size), 1.0F, 2.0F));
+    EXPECT_NEAR(dot(centred_unit(x), y) * inverse_deviation(y), ncc(x, y), 1e-5) << "seed " << seed;
+  }
+  EXPECT_EQ(inverse_deviation(std::vector<float>{3.0F, 3.0F, 3.0F}), 0.0F);
+  EXPECT_EQ(inverse_deviation(std::vector<float>{0.0F, 0.0F}), 0.0F);
+  EXPECT_FLOAT_EQ(inverse_deviation(std::vector<float>{1.0F, 4.0F, 1.0F, 4.0F}), 1.0F / 3.0F);
+}
+
+TEST(Similarity, UnitLengthIsMeasuredAndNotANumberHasNone) {
+  EXPECT_TRUE(is_unit_or_zero(std::vector<float>{0.6F, -0.8F}));
+  EXPECT_TRUE(is_unit_or_zero(std::vector<float>{0.0F, 0.0F}));
+  EXPECT_FALSE(is_unit_or_zero(std::vector<float>{0.6F, 0.7F}));
+  EXPECT_FALSE(is_unit_or_zero(std::vector<float>{1e-3F, 0.0F}));
+  EXPECT_FALSE(is_unit_or_zero(std::vector<float>{std::numeric_limits<float>::quiet_NaN(), 1.0F}));
+}
+
 TEST(Similarity, DotAddsEveryElementOfEveryLength) {
   for (std::size_t size = 0; size < 70; ++size) {
     std::vector<float> x;

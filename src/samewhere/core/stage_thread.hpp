@@ -59,6 +59,36 @@ class WorkerThread {
   std::thread thread_;  // last: it starts when everything above is ready
 };
 
+// The first stage of a chain: sends what `next` gives until it gives nothing or nobody listens,
+// then closes `out`, and so if `next` throws, which comes out of join(). The destructor closes it
+// too.
+template <class Out>
+class SourceThread {
+ public:
+  SourceThread(Channel<Out>& out, std::function<std::optional<Out>()> next)
+      : out_(out), worker_([&out, next = std::move(next)] {
+          const ChannelCloser closer{out};
+          while (std::optional<Out> message = next()) {
+            if (!out.send(std::move(*message))) return;
+          }
+        }) {}
+
+  SourceThread(const SourceThread&) = delete;
+  SourceThread& operator=(const SourceThread&) = delete;
+  ~SourceThread() { out_.close(); }
+
+  void join() { worker_.join(); }
+
+ private:
+  struct ChannelCloser {
+    Channel<Out>& out;
+    ~ChannelCloser() { out.close(); }
+  };
+
+  Channel<Out>& out_;
+  WorkerThread worker_;
+};
+
 // Runs a single-threaded stage between two channels: out = stage(in) until `in` is closed, then
 // closes `out`. If the stage throws, both channels are closed, so that its neighbours end too, and
 // join() throws what the stage threw. The destructor closes both channels as well: an exception

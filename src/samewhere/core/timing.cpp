@@ -20,6 +20,13 @@ TimingSummary summarize(std::vector<double> durations_ms) {
           std::accumulate(durations_ms.begin(), durations_ms.end(), 0.0)};
 }
 
+void Timings::add(const Timings& other) {
+  for (const auto& [stage, durations_ms] : other.durations_ms_) {
+    auto& own = durations_ms_[stage];
+    own.insert(own.end(), durations_ms.begin(), durations_ms.end());
+  }
+}
+
 double peak_memory_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -24,6 +24,8 @@ class Timings {
   void add(const std::string& stage, double duration_ms) {
     durations_ms_[stage].push_back(duration_ms);
   }
+  // All of another's, after its own: of a thread that had its own.
+  void add(const Timings& other);
   const std::map<std::string, std::vector<double>>& durations_ms() const { return durations_ms_; }
 
  private:

@@ -1,3 +1,5 @@
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include <samewhere/core/timing.hpp>
@@ -36,6 +38,17 @@ TEST(Timing, AScopedTimerAddsOneDurationToItsStage) {
   ASSERT_EQ(timings.durations_ms().count("track"), 1U);
   EXPECT_EQ(timings.durations_ms().at("track").size(), 2U);
   EXPECT_GE(timings.durations_ms().at("track").front(), 0.0);
+}
+
+TEST(Timing, AnothersDurationsComeAfterItsOwn) {
+  Timings own;
+  Timings other;
+  own.add("track", 1.0);
+  other.add("track", 2.0);
+  other.add("map", 3.0);
+  own.add(other);
+  EXPECT_EQ(own.durations_ms().at("track"), (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(own.durations_ms().at("map"), std::vector<double>{3.0});
 }
 
 TEST(Timing, PeakMemoryGrowsWithAnAllocationThatIsTouched) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <string>
+
 #include <samewhere/core/config.hpp>
 
 namespace samewhere::describe {
+
+enum class Method { kHog, kAutoencoder };
 
 struct HogConfig {
   int width_px = 160;
@@ -12,6 +16,8 @@ struct HogConfig {
 };
 
 struct Config {
+  Method method = Method::kHog;
+  std::string network = "autoencoder.onnx";
   // The published "360x480" read as rows x columns, which keeps the 4:3 of the usual camera.
   int width_px = 480;
   int height_px = 360;
@@ -34,6 +40,12 @@ inline void visit_fields(HogConfig& config, core::FieldVisitor& visit) {
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("method", config.method,
+        {.help = "histograms of oriented gradients, or the code of a trained network",
+         .choices = {"hog", "autoencoder"}});
+  visit("network", config.network,
+        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN; relative to the working directory, then "
+                 "to models/"});
   visit("width_px", config.width_px,
         {.help = "columns of the image after preprocessing", .min = 1, .max = 4096});
   visit("height_px", config.height_px,

@@ -1,10 +1,13 @@
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include <samewhere/core/checksum.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/similarity.hpp>
+#include <samewhere/describe/autoencoder.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/describe/hog.hpp>
 #include <samewhere/describe/preprocess.hpp>
@@ -15,11 +18,10 @@ namespace {
 // Goes up when the same settings give another vector.
 constexpr std::string_view kHogVersion = "hog 1\n";
 
-// FNV-1a (Fowler, Noll and Vo).
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
+// The network is not asked, so its name changes nothing.
+std::uint64_t checksum_of(Config config) {
+  config.network.clear();
+  return core::checksum(std::string(kHogVersion) + core::config_as_yaml(config));
 }
 
 void check_cells_fit(std::string_view key, int side_px, int cell_px) {
@@ -32,9 +34,7 @@ void check_cells_fit(std::string_view key, int side_px, int cell_px) {
 
 class HogDescriber : public Describer {
  public:
-  explicit HogDescriber(const Config& config)
-      : config_(config),
-        checksum_(hash_of(std::string(kHogVersion) + core::config_as_yaml(config))) {
+  explicit HogDescriber(const Config& config) : config_(config), checksum_(checksum_of(config)) {
     check_cells_fit("width_px", config.hog.width_px, config.hog.cell_px);
     check_cells_fit("height_px", config.hog.height_px, config.hog.cell_px);
   }
@@ -57,6 +57,7 @@ class HogDescriber : public Describer {
 }  // namespace
 
 std::unique_ptr<Describer> make_describer(const Config& config) {
+  if (config.method == Method::kAutoencoder) return make_autoencoder(config);
   return std::make_unique<HogDescriber>(config);
 }
 

@@ -21,12 +21,13 @@ class Describer {
   // `image` as it came from the camera: 8-bit grey or BGR, any size from 1x1 (else ContractError).
   // The vector has length 1, or is all zero for a view without structure.
   virtual core::Descriptor describe(core::FrameId frame, const cv::Mat& image) = 0;
-  // Differs between any two describers that may give different vectors for one image: method,
-  // version and every setting.
+  // Differs between any two describers whose vectors cannot be compared: method, version, every
+  // setting that bears on it, and the network's weights.
   virtual std::uint64_t checksum() const = 0;
 };
 
-// Throws InputError on settings that do not fit each other.
+// By config.method. Throws InputError on settings that do not fit each other, and on a network that
+// cannot be used (autoencoder.hpp).
 std::unique_ptr<Describer> make_describer(const Config& config);
 
 }  // namespace samewhere::describe

@@ -11,10 +11,12 @@ namespace {
 class PrefetchedSource : public core::Source {
  public:
   explicit PrefetchedSource(std::unique_ptr<core::Source> source)
-      : source_(std::move(source)), frames_(1), reader_([this] { read_all(); }) {}
+      : source_(std::move(source)),
+        frames_(1),
+        reader_(frames_, [this] { return source_->next(); }) {}
   PrefetchedSource(const PrefetchedSource&) = delete;
   PrefetchedSource& operator=(const PrefetchedSource&) = delete;
-  ~PrefetchedSource() override { frames_.close(); }
+  ~PrefetchedSource() override = default;
 
   core::SourceInfo info() const override { return source_->info(); }
   core::Truth truth() const override { return source_->truth(); }
@@ -26,21 +28,9 @@ class PrefetchedSource : public core::Source {
   }
 
  private:
-  void read_all() {
-    const Closer closer{frames_};
-    while (std::optional<core::Frame> frame = source_->next()) {
-      if (!frames_.send(*std::move(frame))) return;
-    }
-  }
-
-  struct Closer {
-    core::Channel<core::Frame>& frames;
-    ~Closer() { frames.close(); }
-  };
-
   std::unique_ptr<core::Source> source_;
   core::Channel<core::Frame> frames_;
-  core::WorkerThread reader_;  // last: it starts when everything above is ready and ends before it
+  core::SourceThread<core::Frame> reader_;  // last: starts when all above is ready, ends before it
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace samewhere::pipeline {
 struct Config {
   std::string source;  // what was run; makes config.yaml of a run complete
   int seed = 0;
+  bool threads = true;
   input::Config input;
   twin::Config twin;
   features::Config features;
@@ -35,6 +36,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("source", config.source,
         {.help = "what was run; written by the program, read by `samewhere eval`"});
   visit("seed", config.seed, {.help = "of everything random", .min = 0});
+  visit("threads", config.threads,
+        {.help = "`loops`: describing, searching and judging in a thread each; the results are the "
+                 "same"});
   visit("input", config.input, {.help = "Reading recordings"});
   visit("twin", config.twin, {.help = "The twin building"});
   visit("features", config.features, {.help = "Points of interest and their matches"});

@@ -2,31 +2,46 @@
 
 namespace samewhere::pipeline {
 
-LoopDetector::LoopDetector(const Config& config, core::Timings& timings)
-    : settings_{config.verify, config.features, config.optimize,
-                static_cast<std::uint64_t>(config.seed)},
-      timings_(timings),
-      describer_(describe::make_describer(config.describe)),
-      retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)) {}
+LoopDetector::LoopDetector(const Config& config)
+    : describer_(describe::make_describer(config.describe)),
+      retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)),
+      settings_{config.verify, config.features, config.optimize,
+                static_cast<std::uint64_t>(config.seed)} {}
 
 std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const features::View& view,
-                                                const MeasureOdometry& measure_odometry) {
+                                                const MeasureOdometry& measure_odometry,
+                                                core::Timings& timings) {
   core::Descriptor descriptor;
   {
-    const core::ScopedTimer timer(timings_, "describe");
-    descriptor = describer_->describe(view.frame, image);
+    const core::ScopedTimer timer(timings, "describe");
+    descriptor = describe(view.frame, image);
   }
   std::vector<core::Candidate> candidates;
   {
-    const core::ScopedTimer timer(timings_, "retrieve");
-    candidates = retriever_.query(descriptor);
-    retriever_.add(descriptor);
+    const core::ScopedTimer timer(timings, "retrieve");
+    candidates = retrieve::compare(descriptor, search(descriptor));
   }
-  const core::ScopedTimer timer(timings_, "verify");
+  const core::ScopedTimer timer(timings, "verify");
+  return judge(candidates, view, measure_odometry);
+}
+
+core::Descriptor LoopDetector::describe(core::FrameId frame, const cv::Mat& image) {
+  return describer_->describe(frame, image);
+}
+
+std::vector<retrieve::FoundView> LoopDetector::search(const core::Descriptor& descriptor) {
+  std::vector<retrieve::FoundView> found = retriever_.search(descriptor);
+  retriever_.add(descriptor);
+  return found;
+}
+
+std::vector<core::LedgerRow> LoopDetector::judge(const std::vector<core::Candidate>& candidates,
+                                                 const features::View& view,
+                                                 const MeasureOdometry& measure_odometry) {
   std::vector<core::LedgerRow> rows;
-  for (auto& candidate : candidates) {
+  for (core::Candidate candidate : candidates) {
     candidate.id = core::CandidateId(num_candidates_++);
-    rows.push_back({candidate, judge(candidate, view, measure_odometry)});
+    rows.push_back({candidate, verdict_on(candidate, view, measure_odometry)});
   }
   for (const auto& row : rows) {
     if (core::is_loop(row.verdict)) history_.last_loop_query = view.frame;
@@ -35,8 +50,8 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
   return rows;
 }
 
-core::Verdict LoopDetector::judge(const core::Candidate& candidate, const features::View& view,
-                                  const MeasureOdometry& measure_odometry) {
+core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const features::View& view,
+                                       const MeasureOdometry& measure_odometry) const {
   core::Evidence evidence{.similarity = candidate.similarity};
   if (auto refused = verify::refuse_early(candidate, evidence, history_, settings_.verify))
     return *refused;

@@ -21,25 +21,34 @@ namespace samewhere::pipeline {
 using MeasureOdometry = std::function<std::optional<core::OdometryEvidence>(
     const core::Candidate& candidate, const core::Sim3& match_from_query)>;
 
-// Have I been here before? Describe the view, retrieve those that look alike, verify each one.
+// Have I been here before? Describe the view, search those that look alike, judge each one.
 class LoopDetector {
  public:
-  // `timings` outlives the detector.
-  LoopDetector(const Config& config, core::Timings& timings);
+  explicit LoopDetector(const Config& config);
 
   // The judged candidates of this view, most similar first; the view is remembered for later ones.
-  // Frames ascend.
+  // Frames ascend. The steps below, timed as "describe", "retrieve" and "verify".
   std::vector<core::LedgerRow> look(const cv::Mat& image, const features::View& view,
-                                    const MeasureOdometry& measure_odometry);
+                                    const MeasureOdometry& measure_odometry,
+                                    core::Timings& timings);
+
+  // The steps of look(). Each has its own state and gets the frames in order; so each may run in a
+  // thread of its own, with the same result.
+  core::Descriptor describe(core::FrameId frame, const cv::Mat& image);
+  std::vector<retrieve::FoundView> search(const core::Descriptor& descriptor);
+  std::vector<core::LedgerRow> judge(const std::vector<core::Candidate>& candidates,
+                                     const features::View& view,
+                                     const MeasureOdometry& measure_odometry);
 
  private:
-  core::Verdict judge(const core::Candidate& candidate, const features::View& view,
-                      const MeasureOdometry& measure_odometry);
+  core::Verdict verdict_on(const core::Candidate& candidate, const features::View& view,
+                           const MeasureOdometry& measure_odometry) const;
 
-  verify::MeasureSettings settings_;
-  core::Timings& timings_;
-  std::unique_ptr<describe::Describer> describer_;
-  retrieve::Retriever retriever_;
+  std::unique_ptr<describe::Describer> describer_;  // of describe()
+
+  retrieve::Retriever retriever_;  // of search()
+
+  verify::MeasureSettings settings_;  // from here on of judge()
   verify::History history_;
   std::map<core::FrameId, features::View> views_;
   std::uint64_t num_candidates_ = 0;

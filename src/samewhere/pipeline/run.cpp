@@ -1,17 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
-#include <samewhere/features/orb.hpp>
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/pipeline/figures.hpp>
-#include <samewhere/pipeline/loop_detector.hpp>
 #include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/pipeline/run.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/report/jpeg.hpp>
@@ -40,28 +40,37 @@ RunOutcome start_outcome(const Config& config, const core::SourceInfo& info) {
   return outcome;
 }
 
-// Feeds every frame to `take` until the source ends, breaks, or somebody presses Ctrl-C.
-void for_each_frame(core::Source& source, const char* what, core::Timings& timings,
-                    RunOutcome& outcome, const std::function<void(const core::Frame&)>& take) {
-  core::Progress progress(what, source.info().num_frames);
-  int num_done = 0;
-  while (!(outcome.record.is_interrupted = core::is_interrupted())) {
-    std::optional<core::Frame> frame;
+// The frames of a source until it ends, breaks, or somebody presses Ctrl-C, with a progress line on
+// stderr. What ended them is in the outcome's record.
+class FrameFeed {
+ public:
+  // `source` and `outcome` outlive the feed.
+  FrameFeed(core::Source& source, RunOutcome& outcome)
+      : source_(source), outcome_(outcome), progress_("frames", source.info().num_frames) {}
+
+  std::optional<core::Frame> next() {
+    if (num_given_ > 0) progress_.update(num_given_);
+    outcome_.record.is_interrupted = core::is_interrupted();
+    if (outcome_.record.is_interrupted) return std::nullopt;
     try {
-      const core::ScopedTimer timer(timings, "wait for input");
-      frame = source.next();
+      const core::ScopedTimer timer(timings_, "wait for input");
+      ++num_given_;
+      return source_.next();
     } catch (const core::InputError& error) {
-      outcome.record.input_error = error.what();
-      return;
+      outcome_.record.input_error = error.what();
+      return std::nullopt;
     }
-    if (!frame) return;
-    {
-      const core::ScopedTimer timer(timings, report::kWholeFrameStage);
-      take(*frame);
-    }
-    progress.update(++num_done);
   }
-}
+
+  const core::Timings& timings() const { return timings_; }
+
+ private:
+  core::Source& source_;
+  RunOutcome& outcome_;
+  core::Timings timings_;
+  core::Progress progress_;
+  int num_given_ = 0;
+};
 
 std::vector<report::ColouredPoint> points_of(const scene::MapVersion& map) {
   std::vector<report::ColouredPoint> points;
@@ -106,13 +115,16 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   RunOutcome outcome = start_outcome(config, source->info());
   Slam slam(config);
   std::vector<std::string> names;
-  for_each_frame(*source, "frames", slam.timings(), outcome, [&](const core::Frame& frame) {
-    slam.feed(frame);
-    names.push_back(frame.name);
-    if (slam.is_keyframe(frame.id)) {
-      outcome.record.thumbnails[frame.id] = report::jpeg_bytes(frame.images[0], kThumbnailWidth_px);
+  FrameFeed feed(*source, outcome);
+  while (const std::optional<core::Frame> frame = feed.next()) {
+    const core::ScopedTimer timer(slam.timings(), report::kWholeFrameStage);
+    slam.feed(*frame);
+    names.push_back(frame->name);
+    if (slam.is_keyframe(frame->id)) {
+      outcome.record.thumbnails[frame->id] =
+          report::jpeg_bytes(frame->images[0], kThumbnailWidth_px);
     }
-  });
+  }
 
   report::RunRecord& record = outcome.record;
   record_frames(slam, names, record);
@@ -120,6 +132,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   record.points = points_of(slam.map());
   record.odometry = odometry_of(slam.map(), slam.frames());
   record.timings = slam.timings();
+  record.timings.add(feed.timings());
   drop_unused_thumbnails(record);
   const SlamEvaluation evaluation = evaluate_slam(findings_of(record), truth);
   record.figures = figures_of(evaluation);
@@ -135,22 +148,13 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
   const core::Truth truth = source->truth();
   const Config config = resolved(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
+  Recognition recognition(config);
+  FrameFeed feed(*source, outcome);
+  const auto run = config.threads ? run_in_threads : run_in_turn;
+  run([&feed] { return feed.next(); }, recognition.steps());
+  std::move(recognition).report_to(outcome);
   report::RunRecord& record = outcome.record;
-  LoopDetector detector(config, record.timings);
-  const auto without_odometry = [](const core::Candidate&, const core::Sim3&) {
-    return std::nullopt;
-  };
-  for_each_frame(*source, "frames", record.timings, outcome, [&](const core::Frame& frame) {
-    const features::View view = features::extract(frame, config.features);
-    const auto rows = detector.look(frame.images[0], view, without_odometry);
-    record.thumbnails[frame.id] = report::jpeg_bytes(frame.images[0], kThumbnailWidth_px);
-    record.ledger.insert(record.ledger.end(), rows.begin(), rows.end());
-    const core::LedgerRow* best = best_of_query(rows, config.verify);
-    if (best == nullptr) return;
-    const double score = verify::score(core::evidence_of(best->verdict), config.verify);
-    outcome.matches.push_back({best->candidate.query, best->candidate.match, score});
-    if (core::is_loop(best->verdict)) outcome.accepted.push_back(outcome.matches.back());
-  });
+  record.timings.add(feed.timings());
   drop_unused_thumbnails(record);
   const RecognitionFindings findings{static_cast<int>(record.ledger.size()), outcome.matches,
                                      outcome.accepted, config.retrieve.window_frames};

@@ -9,7 +9,7 @@ Slam::Slam(const Config& config)
     : config_(config),
       tracker_({config.track, config.features, config.optimize,
                 static_cast<std::uint64_t>(config.seed)}),
-      detector_(config, timings_) {}
+      detector_(config) {}
 
 void Slam::feed(const core::Frame& frame) {
   features::View view;
@@ -124,7 +124,8 @@ void Slam::look_for_loops(const core::Frame& frame, const features::View& view) 
                                                   keyframe_of_.at(candidate.match),
                                                   rigid_part(match_from_query), config_.verify));
   };
-  const std::vector<core::LedgerRow> rows = detector_.look(frame.images[0], view, measure_odometry);
+  const std::vector<core::LedgerRow> rows =
+      detector_.look(frame.images[0], view, measure_odometry, timings_);
   ledger_.insert(ledger_.end(), rows.begin(), rows.end());
   correct(rows);
 }

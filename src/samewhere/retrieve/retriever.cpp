@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/retrieve/retriever.hpp>
 #include <samewhere/retrieve/search.hpp>
+#include <samewhere/retrieve/store_file.hpp>
 
 namespace samewhere::retrieve {
 namespace {
@@ -22,12 +24,6 @@ SegmentedStore make_store(const Config& config) {
   return {config.group_size, config.queue_size};
 }
 
-bool is_unit_or_zero(const std::vector<float>& vector) {
-  constexpr float kTolerance = 1e-3F;
-  const float squared_length = core::dot(vector, vector);
-  return squared_length == 0.0F || std::abs(squared_length - 1.0F) < kTolerance;  // false on NaN
-}
-
 }  // namespace
 
 Retriever::Retriever(const Config& config, std::uint64_t seed)
@@ -37,36 +33,46 @@ Retriever::Retriever(const Config& config, std::uint64_t seed)
 
 void Retriever::add(const core::Descriptor& descriptor) {
   check(descriptor);
-  store_.append(descriptor.frame, comparable(descriptor));
+  store_.append(descriptor.frame, descriptor.unit);
   describer_checksum_ = descriptor.describer_checksum;
 }
 
-std::vector<core::Candidate> Retriever::query(const core::Descriptor& descriptor) const {
+std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor) const {
   check(descriptor);
-  const std::vector<float> vector = comparable(descriptor);
-  const SearchQuery query{vector, store_.num_older(descriptor.frame, config_.window_frames)};
-  core::Random random(core::seed_of(seed_, "retrieve", descriptor.frame.value()));
-  const bool is_exact = config_.search == Search::kExact;
-  auto found =
-      is_exact ? exact_search(store_, query) : sampled_search(store_, query, config_, random);
-  found = best_places(store_, std::move(found), config_);
-  if (!is_exact) {
-    for (ScoredPosition& scored : found) {
-      scored.similarity = core::ncc(vector, store_.vector(scored.position));
-    }
-    std::sort(found.begin(), found.end(), is_better);
+  const int num_allowed = store_.num_older(descriptor.frame, config_.window_frames);
+  std::vector<ScoredPosition> scored;
+  if (config_.search == Search::kExact) {
+    scored = exact_search(store_, {core::centred_unit(descriptor.unit), num_allowed});
+  } else {
+    core::Random random(core::seed_of(seed_, "retrieve", descriptor.frame.value()));
+    scored = sampled_search(store_, {descriptor.unit, num_allowed}, config_, random);
   }
-  std::vector<core::Candidate> candidates;
-  for (const ScoredPosition& scored : found) {
-    const double similarity = std::clamp(scored.similarity, -1.0, 1.0);
-    candidates.push_back({{}, descriptor.frame, store_.frame(scored.position), similarity});
+  std::vector<FoundView> found;
+  for (const ScoredPosition& best : best_places(store_, std::move(scored), config_)) {
+    const std::span<const float> vector = store_.vector(best.position);
+    found.push_back({store_.frame(best.position), {vector.begin(), vector.end()}});
   }
-  return candidates;
+  return found;
+}
+
+std::vector<core::Candidate> Retriever::query(const core::Descriptor& descriptor) const {
+  return compare(descriptor, search(descriptor));
+}
+
+void Retriever::save(const std::filesystem::path& path) const {
+  core::require(describer_checksum_.has_value(), "there are views to save");
+  save_store(store_, *describer_checksum_, path);
+}
+
+void Retriever::load(const std::filesystem::path& path, std::uint64_t describer_checksum) {
+  core::require(num_views() == 0, "views are loaded into an empty retriever");
+  store_ = load_store(path, describer_checksum, {config_.group_size, config_.queue_size});
+  describer_checksum_ = describer_checksum;
 }
 
 void Retriever::check(const core::Descriptor& descriptor) const {
   core::require(descriptor.frame.is_valid(), "a descriptor names its frame");
-  core::require(!descriptor.unit.empty() && is_unit_or_zero(descriptor.unit),
+  core::require(!descriptor.unit.empty() && core::is_unit_or_zero(descriptor.unit),
                 "a descriptor has unit length or is zero");
   if (!describer_checksum_) return;
   core::require(descriptor.describer_checksum == *describer_checksum_,
@@ -75,11 +81,17 @@ void Retriever::check(const core::Descriptor& descriptor) const {
                 "descriptors of one describer have one length");
 }
 
-// The form whose dot product is what the search ranks by: the NCC in exact search, the cosine in
-// sampled search.
-std::vector<float> Retriever::comparable(const core::Descriptor& descriptor) const {
-  if (config_.search == Search::kSampled) return descriptor.unit;
-  return core::centred_unit(descriptor.unit);
+std::vector<core::Candidate> compare(const core::Descriptor& query,
+                                     const std::vector<FoundView>& found) {
+  std::vector<core::Candidate> candidates;
+  for (const FoundView& view : found) {
+    candidates.push_back({{}, query.frame, view.frame, core::ncc(query.unit, view.unit)});
+  }
+  std::sort(
+      candidates.begin(), candidates.end(), [](const core::Candidate& a, const core::Candidate& b) {
+        return a.similarity > b.similarity || (a.similarity == b.similarity && a.match < b.match);
+      });
+  return candidates;
 }
 
 }  // namespace samewhere::retrieve

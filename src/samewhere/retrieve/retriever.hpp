@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,19 @@
 #include <samewhere/retrieve/segmented_store.hpp>
 
 namespace samewhere::retrieve {
+
+// A stored view that the search found, with what the exact similarity needs of it: a value that
+// does not care what happens to the store meanwhile.
+struct FoundView {
+  core::FrameId frame;
+  std::vector<float> unit;
+};
+
+// The exact similarity of what the search found: candidates with their NCC, eq. (8)-(13), most
+// similar first, of equals the older first; ids are left invalid, the ledger gives them. Throws
+// ContractError if the vectors differ in length.
+std::vector<core::Candidate> compare(const core::Descriptor& query,
+                                     const std::vector<FoundView>& found);
 
 // Which earlier views look like this one? By appearance alone.
 class Retriever {
@@ -22,23 +36,32 @@ class Retriever {
   // descriptor of another describer or length, or one that is neither of unit length nor zero.
   void add(const core::Descriptor& descriptor);
 
-  // The best candidates, most similar first, of equals the older first; never one that is
-  // config.window_frames old or younger. similarity is the NCC, eq. (8)-(13); ids are left invalid,
-  // the ledger gives them. Exact search knows no threshold: what is alike enough, verification
-  // decides. Sampled search may find nothing; its draws depend on seed and query frame only.
-  // The query need not have been added. Throws ContractError as add().
+  // At most config.num_candidates views, none of them config.window_frames old or younger. Exact
+  // search knows no threshold: what is alike enough, verification decides. Sampled search may find
+  // nothing; its draws depend on seed and query frame only. The query need not have been added.
+  // Throws ContractError as add().
+  std::vector<FoundView> search(const core::Descriptor& descriptor) const;
+  // The search and then the exact similarity.
   std::vector<core::Candidate> query(const core::Descriptor& descriptor) const;
 
   int num_views() const { return store_.num_vectors(); }
 
+  // Writes all views to a file, whole or not at all (store_file.hpp). There is at least one, or
+  // ContractError. Throws InputError if the file cannot be written.
+  void save(const std::filesystem::path& path) const;
+  // Takes the views of such a file as if they had been added one by one; the retriever is empty, or
+  // ContractError. Views added later must have later frames: those of a later session have, and to
+  // them everything in the file is older than any window. Throws InputError if the file cannot be
+  // used or was written with another describer than the one with this checksum.
+  void load(const std::filesystem::path& path, std::uint64_t describer_checksum);
+
  private:
   void check(const core::Descriptor& descriptor) const;
-  std::vector<float> comparable(const core::Descriptor& descriptor) const;
 
   Config config_;
   std::uint64_t seed_;
   std::optional<std::uint64_t> describer_checksum_;  // of the first view
-  SegmentedStore store_;                             // of comparable() vectors
+  SegmentedStore store_;
 };
 
 }  // namespace samewhere::retrieve

@@ -71,7 +71,8 @@ std::vector<ScoredPosition> exact_search(const SegmentedStore& store, const Sear
   std::vector<ScoredPosition> scored;
   scored.reserve(static_cast<std::size_t>(query.num_allowed));
   for (int position = 0; position < query.num_allowed; ++position) {
-    scored.push_back({position, core::dot(query.vector, store.vector(position))});
+    const float product = core::dot(query.vector, store.vector(position));
+    scored.push_back({position, product * store.inverse_deviation(position)});
   }
   return scored;
 }

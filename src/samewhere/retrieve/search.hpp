@@ -20,13 +20,15 @@ struct ScoredPosition {
 // More similar first; of equals the older first.
 bool is_better(const ScoredPosition& a, const ScoredPosition& b);
 
-// A query's vector, and how many of the stored ones it may match: positions 0 .. num_allowed - 1.
+// A query's vector (exact search: core::centred_unit of it), and how many of the stored ones it may
+// match: positions 0 .. num_allowed - 1.
 struct SearchQuery {
   std::span<const float> vector;
   int num_allowed = 0;
 };
 
-// Dot product with every allowed vector, in the order of the store.
+// NCC, eq. (8)-(13), with every allowed vector, in the order of the store. Reads the store once, as
+// fast as memory gives it.
 std::vector<ScoredPosition> exact_search(const SegmentedStore& store, const SearchQuery& query);
 
 // The published preliminary match (its Table 1; it says RANSAC, but samples without a model): L

@@ -67,14 +67,15 @@ std::vector<int> positions(const std::vector<ScoredPosition>& scored) {
 
 TEST(ExactSearch, ComparesEveryAllowedVectorAndNoOther) {
   const Scene scene = random_scene(1, 137);
-  const auto scored = exact_search(scene.store, {scene.query, 120});
+  const std::vector<float> centred = core::centred_unit(scene.query);
+  const auto scored = exact_search(scene.store, {centred, 120});
   ASSERT_EQ(scored.size(), 120U);
   for (int i = 0; i < 120; ++i) {
     EXPECT_EQ(scored[static_cast<std::size_t>(i)].position, i);
     EXPECT_NEAR(scored[static_cast<std::size_t>(i)].similarity,
-                core::cosine(scene.query, scene.store.vector(i)), 1e-6);
+                core::ncc(scene.query, scene.store.vector(i)), 1e-5);
   }
-  EXPECT_TRUE(exact_search(scene.store, {scene.query, 0}).empty());
+  EXPECT_TRUE(exact_search(scene.store, {centred, 0}).empty());
 }
 
 TEST(SampledSearch, WithVeryManyDrawsFindsTheBestThreeOfEveryQueue) {

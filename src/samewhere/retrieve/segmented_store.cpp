@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/similarity.hpp>
 #include <samewhere/retrieve/segmented_store.hpp>
 
 namespace samewhere::retrieve {
@@ -24,6 +25,7 @@ void SegmentedStore::append(core::FrameId frame, std::span<const float> vector) 
     groups_.emplace_back().reserve(static_cast<std::size_t>(group_size_) * vector.size());
   }
   groups_.back().insert(groups_.back().end(), vector.begin(), vector.end());
+  inverse_deviations_.push_back(core::inverse_deviation(vector));
   frames_.push_back(frame);
 }
 

@@ -17,6 +17,8 @@ struct PositionRange {
 // draws them: groups of `group_size` vectors, each group of queues of `queue_size` consecutive ones
 // (100 and 10). A group is one block of memory (100 vectors of 1260 floats: 504 kB) that never
 // moves, so appending costs one copy of the vector whatever the size of the store.
+// Memory per view: 4 bytes per number and 12 more (5052 bytes for 1260 numbers, 505 MB for 100,000
+// views); the last group is reserved whole.
 class SegmentedStore {
  public:
   // group_size is a positive multiple of queue_size, or ContractError.
@@ -33,6 +35,10 @@ class SegmentedStore {
   // Position is in [0, num_vectors()): 0 is the oldest.
   core::FrameId frame(int position) const { return frames_[static_cast<std::size_t>(position)]; }
   std::span<const float> vector(int position) const;
+  // core::inverse_deviation of the vector, computed once, for the exact similarity.
+  float inverse_deviation(int position) const {
+    return inverse_deviations_[static_cast<std::size_t>(position)];
+  }
   // Group and queue count from 0. Shorter or empty where the store has not got so far.
   PositionRange queue(int group, int queue) const;
   // How many stored frames are more than window_frames older than `frame`: exactly positions
@@ -44,6 +50,7 @@ class SegmentedStore {
   int queue_size_;
   int vector_length_ = 0;
   std::vector<core::FrameId> frames_;
+  std::vector<float> inverse_deviations_;
   std::vector<std::vector<float>> groups_;
 };
 

@@ -1,0 +1,121 @@
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <Eigen/Core>
+#include <ceres/version.h>
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "commands.hpp"
+#include "options.hpp"
+#include "print.hpp"
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/stage_thread.hpp>
+#include <samewhere/core/timing.hpp>
+#include <samewhere/describe/describer.hpp>
+#include <samewhere/describe/inference.hpp>
+#include <samewhere/describe/preprocess.hpp>
+#include <samewhere/twin/picture_cache.hpp>
+
+namespace samewhere::app {
+namespace {
+
+std::string picture_cache() {
+  const auto place = twin::cache_place_from_environment();
+  if (!place) return "off (SAMEWHERE_CACHE is unset)";
+  std::error_code ignored;  // what cannot be looked at is not there
+  return fmt::format("{} ({}, {} MB at most)", place->root.string(),
+                     std::filesystem::is_directory(place->root, ignored) ? "a folder" : "not there",
+                     place->max_bytes / 1'000'000);
+}
+
+std::vector<report::Figure> system_figures() {
+  return {
+      {"samewhere", SAMEWHERE_VERSION},
+      {"build", SAMEWHERE_BUILD_TYPE ", " SAMEWHERE_COMPILER},
+      {"OpenCV", CV_VERSION},
+      {"Eigen",
+       fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"Ceres", CERES_VERSION_STRING},
+      {"threads", fmt::format("{} on this machine, {} in OpenCV", core::num_hardware_threads(),
+                              cv::getNumThreads())},
+      {"networks run by", describe::inference_backend()},
+      {"rendered pictures", picture_cache()},
+  };
+}
+
+// Edges in every direction, 640x480 BGR; what it shows makes no difference to the time.
+cv::Mat test_picture() {
+  cv::Mat picture(480, 640, CV_8UC3);
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) {
+      const auto level = static_cast<std::uint8_t>((x * x + y * y) / 256);
+      picture.at<cv::Vec3b>(y, x) = {level, level, level};
+    }
+  }
+  return picture;
+}
+
+template <class Work>
+double median_ms(const Work& work) {
+  constexpr int kNumTimes = 50;
+  core::Timings timings;
+  work();  // warm
+  for (int i = 0; i < kNumTimes; ++i) {
+    const core::ScopedTimer timer(timings, "work");
+    work();
+  }
+  return core::summarize(timings.durations_ms().at("work")).median_ms;
+}
+
+std::vector<report::Figure> describer_figures(const describe::Config& config) {
+  const auto describer = describe::make_describer(config);
+  const cv::Mat picture = test_picture();
+  const core::FrameId frame(0);
+  const double preprocess_ms = median_ms([&] { describe::preprocess(picture, config); });
+  const double whole_ms = median_ms([&] { describer->describe(frame, picture); });
+  const auto length = describer->describe(frame, picture).unit.size();
+  std::vector<report::Figure> figures;
+  if (config.method == describe::Method::kAutoencoder) {
+    figures.push_back({"network", describe::find_network(config.network).string()});
+  }
+  figures.push_back(
+      {"descriptor", fmt::format("{} numbers, describer {:016x}", length, describer->checksum())});
+  figures.push_back(
+      {"time to describe a view",
+       fmt::format("{:.1f} ms preprocessing + {:.1f} ms description (640x480, median of 50)",
+                   preprocess_ms, whole_ms - preprocess_ms)});
+  return figures;
+}
+
+void print(const pipeline::Config& config) {
+  std::vector<report::Figure> figures = system_figures();
+  try {
+    const auto measured = describer_figures(config.describe);
+    figures.insert(figures.end(), measured.begin(), measured.end());
+  } catch (const core::InputError&) {
+    print_figures(figures);  // the machine is known even if the describer cannot be made
+    throw;
+  }
+  print_figures(figures);
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& app) {
+  auto config = std::make_shared<ConfigOptions>();
+  CLI::App* sub = app.add_subcommand(
+      "doctor", "Print versions, machine and speed: what a report of a fault should hold");
+  add_config_options(*sub, *config);
+  sub->footer(
+      "Examples:\n"
+      "  samewhere doctor\n"
+      "  samewhere doctor --set describe.method=autoencoder --set describe.network=my.onnx");
+  sub->callback([config] { print(load(*config)); });
+}
+
+}  // namespace samewhere::app

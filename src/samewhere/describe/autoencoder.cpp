@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include <samewhere/core/checksum.hpp>
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/similarity.hpp>
+#include <samewhere/describe/autoencoder.hpp>
+#include <samewhere/describe/inference.hpp>
+#include <samewhere/describe/preprocess.hpp>
+
+namespace samewhere::describe {
+namespace {
+
+// Goes up when the same network and settings give another vector.
+constexpr std::string_view kVersion = "autoencoder 1";
+
+// Where the file lies and how HOG is set does not change the code.
+std::uint64_t checksum_of(Config config, const NetworkFile& network) {
+  config.network.clear();
+  config.hog = HogConfig{};
+  return core::checksum(
+      fmt::format("{}\n{:016x}\n{}", kVersion, network.checksum, core::config_as_yaml(config)));
+}
+
+bool is_of_one_level(const cv::Mat& grey) {
+  double darkest = 0.0;
+  double brightest = 0.0;
+  cv::minMaxLoc(grey, &darkest, &brightest);
+  return darkest == brightest;
+}
+
+class Autoencoder : public Describer {
+ public:
+  explicit Autoencoder(const Config& config) : Autoencoder(config, find_network(config.network)) {}
+
+  core::Descriptor describe(core::FrameId frame, const cv::Mat& image) override {
+    const cv::Mat prepared = preprocess(image, config_);
+    if (is_of_one_level(prepared)) {
+      return {frame, std::vector<float>(code_length_, 0.0F), checksum_};
+    }
+    const std::vector<float> code = inference_->run(network_input(prepared));
+    const auto broken =
+        std::find_if_not(code.begin(), code.end(), [](float x) { return std::isfinite(x); });
+    if (broken != code.end()) {
+      throw core::InputError(fmt::format(
+          "{}: number {} of the network's code is {} for frame {}; expected finite numbers",
+          path_.string(), broken - code.begin(), *broken, frame.index()));
+    }
+    return {frame, core::unit(code), checksum_};
+  }
+
+  std::uint64_t checksum() const override { return checksum_; }
+
+ private:
+  Autoencoder(const Config& config, const std::filesystem::path& path)
+      : Autoencoder(config, read_network(path)) {}
+
+  Autoencoder(const Config& config, const NetworkFile& network)
+      : config_(config),
+        path_(network.path),
+        input_px_(network.input_px),
+        checksum_(checksum_of(config, network)),
+        inference_(make_inference(network)) {
+    // whether it can be run shows only here, and is better known before the first frame
+    code_length_ = inference_->run(cv::Mat(input_px_, CV_32FC1, cv::Scalar(0.5))).size();
+  }
+
+  cv::Mat network_input(const cv::Mat& prepared) const {
+    const bool is_shrunk = input_px_.width <= prepared.cols && input_px_.height <= prepared.rows;
+    cv::Mat reduced;
+    cv::resize(prepared, reduced, input_px_, 0.0, 0.0,
+               is_shrunk ? cv::INTER_AREA : cv::INTER_LINEAR);
+    cv::Mat picture;
+    reduced.convertTo(picture, CV_32F, 1.0 / 255.0);
+    return picture;
+  }
+
+  Config config_;
+  std::filesystem::path path_;
+  cv::Size input_px_;
+  std::uint64_t checksum_;
+  std::unique_ptr<Inference> inference_;
+  std::size_t code_length_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Describer> make_autoencoder(const Config& config) {
+  return std::make_unique<Autoencoder>(config);
+}
+
+}  // namespace samewhere::describe

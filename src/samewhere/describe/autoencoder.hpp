@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+
+#include <samewhere/describe/describer.hpp>
+
+namespace samewhere::describe {
+
+// Describes a view by the code of a trained network, config.network (section 3.1.2 of the published
+// method): the preprocessed picture, reduced to the network's input and scaled to [0, 1]. A view of
+// one grey level is all zero, whatever the network would make of it. describe() throws InputError
+// naming the network if its code is not finite.
+// Throws InputError as find_network, read_network and make_inference do, and if the network's
+// output is not 1xN.
+std::unique_ptr<Describer> make_autoencoder(const Config& config);
+
+}  // namespace samewhere::describe

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+namespace samewhere::describe {
+
+// An ONNX file that turns one grey picture into one vector, and what it says of its ends.
+struct NetworkFile {
+  std::filesystem::path path;
+  std::string bytes;
+  std::uint64_t checksum = 0;  // of the bytes
+  std::string input_name;
+  std::string output_name;
+  cv::Size input_px;
+};
+
+// The file itself, relative to the working directory; failing that, in the folder models/ of the
+// source that this program was built from. Throws InputError naming both if it is in neither.
+std::filesystem::path find_network(const std::string& file);
+
+// Reads the file and the description of its ends. Throws InputError naming the file, what it holds
+// and what was expected: if it is no ONNX file or cut short, or unless it has one input of floats
+// 1x1xHxW (H, W fixed; the first dimension may be free) and one output of floats.
+NetworkFile read_network(const std::filesystem::path& path);
+
+// Throws InputError naming the network and the shape unless that is 1xN with N at least 2.
+void require_code_shape(const NetworkFile& network, const std::vector<std::int64_t>& output_shape);
+
+}  // namespace samewhere::describe
