@@ -36,7 +36,7 @@ constexpr int kInterrupted = 130;
 constexpr const char* kExamples =
     "Examples:\n"
     "  samewhere train --images photos twin:hotel?seed=7 --out models/mine.onnx\n"
-    "  samewhere train --images gallery.txt --out small.onnx --code-size 288 --epochs 20\n"
+    "  samewhere train --images gallery.txt --out small.onnx --code-size 280 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp off\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
     "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
@@ -100,7 +100,7 @@ std::string as_typed(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool is_plain = word.find_first_of(" ?&*'\"$()") == std::string::npos && !word.empty();
-    command += is_plain ? " " + word : " '" + word + "'";
+    command += is_plain ? fmt::format(" {}", word) : fmt::format(" '{}'", word);
   }
   return command;
 }

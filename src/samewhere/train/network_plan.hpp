@@ -19,8 +19,8 @@ struct ConvolutionPlan {
 };
 
 // The code is the mean of what the last convolution gives (14 x 19 positions) in windows of so many
-// positions a side, so many apart: 6 x 8 of them.
-inline constexpr int kCodeWindow = 4;
+// positions a side, so many apart: 5 x 7 of them.
+inline constexpr int kCodeWindow = 6;
 inline constexpr int kCodeStep = 2;
 
 // The shape of the encoder, after CALC (Merrill and Huang, RSS 2018): three convolutions. The first

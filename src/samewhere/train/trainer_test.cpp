@@ -129,12 +129,12 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   const std::string network = core::read_file(job.out);
   const auto card = nlohmann::json::parse(core::read_file(card_of(job.out)));
   EXPECT_EQ(card["sha256"], sha256_of(network));
-  EXPECT_EQ(card["settings"]["code_size"], "240");
+  EXPECT_EQ(card["settings"]["code_size"], "245");
   EXPECT_EQ(card["images"]["sources"][0]["num_images"], 24);
   EXPECT_EQ(card["epochs"].size(), 4U);
   EXPECT_EQ(card["commit"], "abc");
   const cv::Mat input = encoder_input(images_.views[0], job.config.input_size);
-  EXPECT_EQ(OnnxRunner(network).encode(input).size(), 240U);
+  EXPECT_EQ(OnnxRunner(network).encode(input).size(), 245U);
 }
 
 }  // namespace
