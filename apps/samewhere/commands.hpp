@@ -14,7 +14,7 @@ inline constexpr int kInterrupted = 130;
 // in `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
 void add_loops_command(CLI::App& app, int& exit_code);
-void add_twin_command(CLI::App& app, int& exit_code);
+void add_twin_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 void add_train_command(CLI::App& app);

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/interrupt.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -32,7 +33,7 @@ int run(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_loops_command(app, exit_code);
   add_eval_command(app);
-  add_twin_command(app, exit_code);
+  add_twin_command(app);
   add_config_command(app);
   add_train_command(app);
   add_doctor_command(app);
@@ -60,6 +61,8 @@ int main(int argc, char** argv) {
     return app::run(argc, argv);
   } catch (const core::InputError& error) {
     return app::complain(error.what(), app::kBadInput);
+  } catch (const core::Interrupted&) {
+    return app::kInterrupted;
   } catch (const std::exception& error) {
     return app::complain(std::string("this is a bug of ours: ") + error.what(),
                          app::kBrokenPromise);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -41,9 +42,19 @@ bool has_sheet(const TwinCommand& command) {
   return !command.sheet.empty() || !command.similarity_sheet.empty();
 }
 
+// Before anything is rendered.
 void check_sheet(const std::string& file) {
-  if (file.empty() || file.ends_with(".jpg") || file.ends_with(".jpeg")) return;
-  throw core::InputError(file + ": a sheet is a JPEG file; expected a name that ends in .jpg");
+  if (file.empty()) return;
+  std::string ending = std::filesystem::path(file).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending != ".jpg" && ending != ".jpeg") {
+    throw core::InputError(file + ": a sheet is a JPEG file; expected a name that ends in .jpg");
+  }
+  const auto folder = std::filesystem::absolute(file).parent_path();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(folder, unknown)) return;
+  throw core::InputError(
+      fmt::format("{}: there is no folder {}; expected one to write into", file, folder.string()));
 }
 
 void write_sheet(const std::string& file, const cv::Mat& sheet) {
@@ -51,10 +62,11 @@ void write_sheet(const std::string& file, const cv::Mat& sheet) {
   fmt::print("{}\n", file);
 }
 
-void write_sheets(const TwinCommand& command, const twin::Walkthrough& walk) {
-  if (!command.sheet.empty()) write_sheet(command.sheet, twin::contact_sheet(walk));
+void write_sheets(const TwinCommand& command, const twin::Walkthrough& walk,
+                  const twin::Config& config) {
+  if (!command.sheet.empty()) write_sheet(command.sheet, twin::contact_sheet(walk, config));
   if (!command.similarity_sheet.empty()) {
-    write_sheet(command.similarity_sheet, twin::similarity_sheet(walk.spec()));
+    write_sheet(command.similarity_sheet, twin::similarity_sheet(walk.spec(), config));
   }
 }
 
@@ -73,62 +85,78 @@ void check(const TwinCommand& command) {
   check_sheet(command.similarity_sheet);
 }
 
-twin::Written write_folder(const TwinCommand& command, core::Source& source,
-                           const twin::AskTables& tables) {
-  return command.format == "tum" ? twin::write_tum_folder(source, command.out, tables)
-                                 : twin::write_euroc_folder(source, command.out, tables);
+void write_folder(const TwinCommand& command, core::Source& source,
+                  const twin::MakeTables& tables) {
+  if (command.format == "tum") {
+    twin::write_tum_folder(source, command.out, tables);
+  } else {
+    twin::write_euroc_folder(source, command.out, tables);
+  }
 }
 
-int write_walk(const TwinCommand& command, const pipeline::Config& config) {
+void write_walk(const TwinCommand& command, const pipeline::Config& config) {
   const auto walk =
       std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
   // the folder first: a name that is taken is told before anything is rendered
   if (!command.out.empty()) {
     const auto source = twin::open_twin(walk, config.twin);
-    const auto tables = [&walk] { return twin::SideTables{walk->truth(), walk->wheels()}; };
-    if (write_folder(command, *source, tables) == twin::Written::kInterrupted) return kInterrupted;
+    const auto tables = [&walk] {
+      return twin::SideTables{twin::watched_truth(*walk), walk->wheels()};
+    };
+    write_folder(command, *source, tables);
     fmt::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
                walk->num_frames(), command.source, walk->truth().loops.size(),
                walk->truth().impostors.size());
   }
-  write_sheets(command, *walk);
-  return kDone;
+  write_sheets(command, *walk, config.twin);
 }
 
-int write(const TwinCommand& command) {
+void write(const TwinCommand& command) {
   check(command);
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
-  if (twin::is_twin_spec(config.source)) return write_walk(command, config);
+  if (twin::is_twin_spec(config.source)) {
+    write_walk(command, config);
+    return;
+  }
   if (has_sheet(command)) {
     throw core::InputError(command.source + ": a sheet shows rendered buildings, twin:PRESET");
   }
   const auto source = pipeline::open_source(config);
-  if (write_folder(command, *source, nullptr) == twin::Written::kInterrupted) {
-    return kInterrupted;
-  }
+  write_folder(command, *source, nullptr);
   fmt::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);
-  return kDone;
+}
+
+// The list alone is printed: what stands beside it would be passed over.
+void check_list_stands_alone(const CLI::App& command, const CLI::Option& list) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option == &list || option->count() == 0) continue;
+    throw core::InputError("twin: found " + option->get_name() +
+                           " beside --list, which prints the presets; expected --list alone");
+  }
 }
 
 }  // namespace
 
-void add_twin_command(CLI::App& app, int& exit_code) {
+void add_twin_command(CLI::App& app) {
   auto command = std::make_shared<TwinCommand>();
   CLI::App* sub = app.add_subcommand(
       "twin", "Write a walk through a rendered look-alike building as a folder others can read");
   sub->add_option("SOURCE", command->source,
                   "twin:PRESET?seed=3&similarity=0.9, or any recording that `run` reads");
-  sub->add_option("--out", command->out, "folder to write, a name that is free");
+  CLI::Option* out = sub->add_option("--out", command->out, "folder to write, a name that is free");
   sub->add_option("--format", command->format,
                   "tum (TUM RGB-D: colour, depth, poses) or euroc (EuRoC: one or two cameras, "
                   "inertial samples, poses)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(out);
   sub->add_option("--sheet", command->sheet, "JPEG file for twelve pictures of the walk");
   sub->add_option("--similarity-sheet", command->similarity_sheet,
-                  "JPEG file for one place and its twin at similarity 0, 0.5, 0.9 and 1");
-  sub->add_flag("--list", command->is_list, "print the presets, a line each");
+                  "JPEG file for one place and its twin at similarity 0, 0.5, 0.9 and 1, "
+                  "whatever SOURCE says");
+  const CLI::Option* list =
+      sub->add_flag("--list", command->is_list, "print the presets, a line each");
   add_config_options(*sub, command->config);
   sub->footer(
       "Examples:\n"
@@ -137,11 +165,12 @@ void add_twin_command(CLI::App& app, int& exit_code) {
       "  samewhere twin 'twin:mirror?camera=stereo' --out mirror --format euroc\n"
       "  samewhere twin 'twin:warehouse?people=5' --sheet warehouse.jpg\n"
       "  samewhere twin twin:office-loop --out short --set twin.num_frames=100");
-  sub->callback([command, &exit_code] {
+  sub->callback([command, sub, list] {
     if (command->is_list) {
+      check_list_stands_alone(*sub, *list);
       print_presets();
     } else {
-      exit_code = write(*command);
+      write(*command);
     }
   });
 }

@@ -22,4 +22,8 @@ void catch_interrupts() {
 
 bool is_interrupted() { return interrupted != 0; }
 
+void stop_if_interrupted() {
+  if (is_interrupted()) throw Interrupted();
+}
+
 }  // namespace samewhere::core

@@ -1,10 +1,20 @@
 #pragma once
 
+#include <exception>
+
 namespace samewhere::core {
 
 // After this, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag: long loops look at it between
 // frames, stop, and their files are finished. A second one ends the process at once.
 void catch_interrupts();
 bool is_interrupted();
+
+// Ends work that is worth nothing unless it is whole.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+// Throws Interrupted after the first Ctrl-C.
+void stop_if_interrupted();
 
 }  // namespace samewhere::core

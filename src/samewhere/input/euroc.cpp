@@ -138,8 +138,8 @@ struct States {
   std::vector<core::InertialTruth> inertial;
 };
 
-// From those of the sensor that the truth belongs to. There is inertial truth where the file has
-// its columns and the sensor sits where the body is: the velocity of another point would tell the
+// From those of the sensor that the truth belongs to. There is inertial truth where the first row
+// has all of its columns (a file may hold poses alone, or poses and velocities) and the sensor sits where the body is: the velocity of another point would tell the
 // body's only together with the turning.
 States read_states(const path& truth, const core::Rigid3& body_from_camera) {
   const core::Rigid3 body_from_sensor = is_there(truth / "sensor.yaml")
@@ -147,13 +147,13 @@ States read_states(const path& truth, const core::Rigid3& body_from_camera) {
                                             : core::Rigid3{};
   const core::Rigid3 sensor_from_camera = inverse(body_from_sensor) * body_from_camera;
   const std::vector<StampedLine> rows = read_stamped_lines(truth / "data.csv");
-  constexpr std::size_t kOnlyPose = 8;
-  const bool has_more = !rows.empty() && rows.front().line.words.size() > kOnlyPose;
+  constexpr std::size_t kNumColumns = 17;
+  const bool is_whole = !rows.empty() && rows.front().line.words.size() >= kNumColumns;
   const bool is_at_body = body_from_sensor.translation.isZero();
   States states;
   for (const StampedLine& row : rows) {
     states.trajectory.push_back({row.stamp_s(), world_from_sensor(row) * sensor_from_camera});
-    if (has_more && is_at_body) states.inertial.push_back(inertial_truth(row, body_from_sensor));
+    if (is_whole && is_at_body) states.inertial.push_back(inertial_truth(row, body_from_sensor));
   }
   return states;
 }

@@ -178,6 +178,16 @@ TEST_F(Euroc, VelocitiesAndBiasesAreThoseOfTheBody) {
   EXPECT_THAT(open()->truth().inertial, IsEmpty());
 }
 
+TEST_F(Euroc, StatesWithoutBiasesArePosesAlone) {
+  const std::string row = "1403636579763555584,1,2,3,1,0,0,0";
+  for (const char* more : {"", ",.1,-.2,.3", ",.1,-.2,.3,1e-3,2e-3,3e-3,.04,.05", ",0"}) {
+    folder_.write("mav0/state_groundtruth_estimate0/data.csv", row + more + "\n");
+    const core::Truth truth = open()->truth();
+    EXPECT_EQ(truth.trajectory.size(), 1U) << more;
+    EXPECT_THAT(truth.inertial, IsEmpty()) << more;
+  }
+}
+
 TEST_F(Euroc, TheFolderWithinIsTakenToo) {
   folder_.write("same_place.txt", "0 0 0\n0 0 0\n1 0 0\n");
   const auto source = open_source(folder_.root() / "mav0", config_);
@@ -260,9 +270,9 @@ TEST_F(Euroc, BrokenSamplesAndPosesAreNamedWithTheirLine) {
   const std::string poses = "mav0/state_groundtruth_estimate0/data.csv";
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0\n"), HasSubstr("found 7 values"));
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,x\n"), HasSubstr("'x'"));
-  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
-              HasSubstr("found 16 values"));
-  EXPECT_EQ(complaint_with(poses, "10,1,2,3,1,0,0,0\n"), "no error") << "poses alone";
+  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0,0\n"
+                                    "11,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
+              AllOf(HasSubstr("line 2"), HasSubstr("found 16 values")));
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,2,0,0,0\n"),
               AllOf(HasSubstr("line 1"), HasSubstr("norm 2")));
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <samewhere/core/config.hpp>
-#include <samewhere/core/stage_thread.hpp>
 
 namespace samewhere::twin {
 
@@ -11,10 +10,6 @@ struct Config {
   int num_frames = 0;        // render only the first frames of the walk; 0 = all
   int num_workers = 0;       // threads that render; 0: one per processor. The frames are the same
 };
-
-inline int num_threads(const Config& config) {
-  return config.num_workers > 0 ? config.num_workers : core::num_hardware_threads();
-}
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("ideal_depth", config.ideal_depth, {.help = "exact depth at every pixel, no sensor model"});

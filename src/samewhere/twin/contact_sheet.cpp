@@ -3,7 +3,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/progress.hpp>
 #include <samewhere/twin/contact_sheet.hpp>
+#include <samewhere/twin/frame_workers.hpp>
+#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/studio.hpp>
 
 namespace samewhere::twin {
@@ -25,6 +29,24 @@ void put(cv::Mat& sheet, int place, const cv::Mat& picture) {
   cv::resize(picture, shrunk, there.size(), 0.0, 0.0, cv::INTER_AREA);
 }
 
+// Pictures of these frames, in their order, by the first camera.
+std::vector<cv::Mat> pictures_of(const Walkthrough& walk, const std::vector<int>& frames,
+                                 const Config& config) {
+  const Studio studio(walk, config);
+  const int num_pictures = static_cast<int>(frames.size());
+  core::Progress progress("pictures", num_pictures);
+  FrameWorkers<cv::Mat> workers(num_pictures, num_threads(config), [&](int i) {
+    return studio.pictures(frames[static_cast<std::size_t>(i)]).images.front();
+  });
+  std::vector<cv::Mat> pictures;
+  while (const std::optional<cv::Mat> picture = workers.next()) {
+    pictures.push_back(*picture);
+    progress.update(static_cast<int>(pictures.size()));
+    core::stop_if_interrupted();
+  }
+  return pictures;
+}
+
 // How much there is to see: mean absolute curvature of the brightness.
 double liveliness(const cv::Mat& picture) {
   cv::Mat curvature;
@@ -33,11 +55,11 @@ double liveliness(const cv::Mat& picture) {
   return mean[0] + mean[1] + mean[2];
 }
 
-// Of the pairs that are nearly as alike as the best, one that shows more than a bare wall.
-Impostor telling_pair(const Walkthrough& walk) {
+// At most 24 pairs, evenly spread, of those that are nearly as alike as the best.
+std::vector<Impostor> nearly_best_pairs(const Walkthrough& walk) {
   constexpr double kNearlyBest = 0.9;
-  constexpr std::size_t kNumTried = 24;
-  std::vector<Impostor> pairs = walk.truth().impostors;
+  constexpr std::size_t kMostPairs = 24;
+  std::vector<Impostor> pairs = watched_truth(walk).impostors;
   double best = 0.0;
   for (const auto& pair : pairs) best = std::max(best, pair.alike);
   std::erase_if(pairs, [&](const Impostor& pair) { return pair.alike < kNearlyBest * best; });
@@ -45,43 +67,52 @@ Impostor telling_pair(const Walkthrough& walk) {
     throw core::InputError("twin:" + walk.spec().preset +
                            ": no place of this building has a twin that the camera sees");
   }
-  const Studio studio(walk, {});
-  Impostor telling = pairs.front();
-  double most = 0.0;
-  for (std::size_t i = 0; i < pairs.size(); i += 1 + pairs.size() / kNumTried) {
-    const double found = liveliness(studio.pictures(pairs[i].match).images.front());
-    if (found <= most) continue;
-    telling = pairs[i];
-    most = found;
+  std::vector<Impostor> spread;
+  for (std::size_t i = 0; i < pairs.size(); i += 1 + pairs.size() / kMostPairs) {
+    spread.push_back(pairs[i]);
   }
-  return telling;
+  return spread;
+}
+
+// One of them that shows more than a bare wall.
+Impostor telling_pair(const Walkthrough& walk, const Config& config) {
+  const std::vector<Impostor> pairs = nearly_best_pairs(walk);
+  std::vector<int> frames;
+  for (const auto& pair : pairs) frames.push_back(pair.match);
+  std::vector<double> found;
+  for (const cv::Mat& picture : pictures_of(walk, frames, config)) {
+    found.push_back(liveliness(picture));
+  }
+  const auto most = std::max_element(found.begin(), found.end());
+  return pairs[static_cast<std::size_t>(most - found.begin())];
 }
 
 }  // namespace
 
-cv::Mat contact_sheet(const Walkthrough& walk) {
+cv::Mat contact_sheet(const Walkthrough& walk, const Config& config) {
   constexpr int kNumPictures = 12;
-  const Studio studio(walk, {});
-  cv::Mat sheet = empty_sheet(kNumPictures / kNumColumns);
+  std::vector<int> frames;
   for (int i = 0; i < kNumPictures; ++i) {
-    const int frame = (walk.num_frames() - 1) * i / (kNumPictures - 1);
-    put(sheet, i, studio.pictures(frame).images.front());
+    frames.push_back((walk.num_frames() - 1) * i / (kNumPictures - 1));
   }
+  cv::Mat sheet = empty_sheet(kNumPictures / kNumColumns);
+  int place = 0;
+  for (const cv::Mat& picture : pictures_of(walk, frames, config)) put(sheet, place++, picture);
   return sheet;
 }
 
-cv::Mat similarity_sheet(const Spec& spec) {
+cv::Mat similarity_sheet(const Spec& spec, const Config& config) {
   Spec varied = spec;
   varied.similarity = 1.0;
-  const Impostor pair = telling_pair(Walkthrough(varied, {}));
+  const Impostor pair = telling_pair(Walkthrough(varied, config), config);
   cv::Mat sheet = empty_sheet(2);
   int column = 0;
   for (const double similarity : {0.0, 0.5, 0.9, 1.0}) {
     varied.similarity = similarity;
-    const Walkthrough walk(varied, {});
-    const Studio studio(walk, {});
-    put(sheet, column, studio.pictures(pair.match).images.front());
-    put(sheet, kNumColumns + column, studio.pictures(pair.query).images.front());
+    const Walkthrough walk(varied, config);
+    const std::vector<cv::Mat> pictures = pictures_of(walk, {pair.match, pair.query}, config);
+    put(sheet, column, pictures[0]);
+    put(sheet, kNumColumns + column, pictures[1]);
     ++column;
   }
   return sheet;

@@ -183,8 +183,8 @@ void write_states(const PartialFolder& out, const core::Truth& known, const core
 
 }  // namespace
 
-Written write_euroc_folder(core::Source& source, const std::filesystem::path& folder,
-                           const AskTables& tables) {
+void write_euroc_folder(core::Source& source, const std::filesystem::path& folder,
+                        const MakeTables& tables) {
   PartialFolder out(folder);
   Lists lists;
   const std::string name = source.info().name;
@@ -192,16 +192,17 @@ Written write_euroc_folder(core::Source& source, const std::filesystem::path& fo
     check_rig(frame, name);
     add_frame(out, frame, lists);
   };
-  if (write_each_frame(source, take) == Written::kInterrupted) return Written::kInterrupted;
+  write_each_frame(source, take);
+  // before the source's truth, of which they may be a part: who makes them tells how far they are
+  if (tables) write_tables(out, lists.stamps_s, tables());
   core::require(lists.rig != nullptr, "a source has at least one frame");
   const core::Truth known = source.truth();
   write_cameras(out, lists);
   write_imu(out, lists);
   write_states(out, known, *lists.rig);
   out.write("mav0/body.yaml", "comment: samewhere\n");
-  write_truth(out, lists.stamps_s, known.places, tables);
+  if (known.places) write_places(out, lists.stamps_s.size(), *known.places);
   out.finish();
-  return Written::kComplete;
 }
 
 }  // namespace samewhere::twin

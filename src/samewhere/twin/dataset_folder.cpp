@@ -109,23 +109,18 @@ void PartialFolder::finish() {
   is_finished_ = true;
 }
 
-Written write_each_frame(core::Source& source,
-                         const std::function<void(const core::Frame&)>& take) {
+void write_each_frame(core::Source& source, const std::function<void(const core::Frame&)>& take) {
   core::Progress progress("frames", source.info().num_frames);
   int num_done = 0;
   while (const std::optional<core::Frame> frame = source.next()) {
     take(*frame);
     progress.update(++num_done);
-    if (core::is_interrupted()) return Written::kInterrupted;
+    core::stop_if_interrupted();
   }
-  return Written::kComplete;
 }
 
-void write_truth(const PartialFolder& out, const std::vector<double>& stamps_s,
-                 const std::optional<core::PlaceTruthMatrix>& places, const AskTables& ask_tables) {
-  if (places) out.write("same_place.pgm", pgm(places->values, stamps_s.size(), 2));
-  if (!ask_tables) return;
-  const SideTables tables = ask_tables();
+void write_tables(const PartialFolder& out, const std::vector<double>& stamps_s,
+                  const SideTables& tables) {
   const WalkTruth& truth = tables.truth;
   core::require(truth.frames.size() == stamps_s.size(), "there is one row of truth per frame");
   out.write("frames.csv", frames_csv(truth.frames, stamps_s));
@@ -133,6 +128,11 @@ void write_truth(const PartialFolder& out, const std::vector<double>& stamps_s,
   out.write("impostors.csv", impostors_csv(truth.impostors));
   if (!truth.overlap.empty()) out.write("overlap.pgm", pgm(truth.overlap, stamps_s.size(), 255));
   if (!tables.wheels.empty()) out.write("wheels.csv", wheels_csv(tables.wheels));
+}
+
+void write_places(const PartialFolder& out, std::size_t num_frames,
+                  const core::PlaceTruthMatrix& places) {
+  out.write("same_place.pgm", pgm(places.values, num_frames, 2));
 }
 
 }  // namespace samewhere::twin

@@ -31,12 +31,15 @@ class PartialFolder {
   bool is_finished_ = false;
 };
 
-// Gives every frame of the source to `take`, with a progress line; kInterrupted if somebody pressed
-// Ctrl-C before the last.
-Written write_each_frame(core::Source& source, const std::function<void(const core::Frame&)>& take);
+// Gives every frame of the source to `take`, with a progress line. Throws core::Interrupted after
+// Ctrl-C.
+void write_each_frame(core::Source& source, const std::function<void(const core::Frame&)>& take);
 
 // frames.csv and so on (dataset.hpp); stamps_s are those of all frames.
-void write_truth(const PartialFolder& out, const std::vector<double>& stamps_s,
-                 const std::optional<core::PlaceTruthMatrix>& places, const AskTables& tables);
+void write_tables(const PartialFolder& out, const std::vector<double>& stamps_s,
+                  const SideTables& tables);
+// same_place.pgm.
+void write_places(const PartialFolder& out, std::size_t num_frames,
+                  const core::PlaceTruthMatrix& places);
 
 }  // namespace samewhere::twin

@@ -54,12 +54,14 @@ void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists)
 
 }  // namespace
 
-Written write_tum_folder(core::Source& source, const std::filesystem::path& folder,
-                         const AskTables& tables) {
+void write_tum_folder(core::Source& source, const std::filesystem::path& folder,
+                      const MakeTables& tables) {
   PartialFolder out(folder);
   Lists lists;
   const auto take = [&](const core::Frame& frame) { add_frame(out, frame, lists); };
-  if (write_each_frame(source, take) == Written::kInterrupted) return Written::kInterrupted;
+  write_each_frame(source, take);
+  // before the source's truth, of which they may be a part: who makes them tells how far they are
+  if (tables) write_tables(out, lists.stamps_s, tables());
   const std::string name = source.info().name;
   const core::Truth known = source.truth();
   out.write("rgb.txt", with_header("color images", name, "timestamp filename", lists.rgb));
@@ -76,9 +78,8 @@ Written write_tum_folder(core::Source& source, const std::filesystem::path& fold
                           core::tum_text(known.trajectory)));
   }
   if (!lists.camera.empty()) out.write("camera.txt", lists.camera);
-  write_truth(out, lists.stamps_s, known.places, tables);
+  if (known.places) write_places(out, lists.stamps_s.size(), *known.places);
   out.finish();
-  return Written::kComplete;
 }
 
 }  // namespace samewhere::twin

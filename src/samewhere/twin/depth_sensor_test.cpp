@@ -12,7 +12,7 @@ namespace {
 TEST(DepthSensor, MeasuresAWholeNumberOfItsUnits) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Renderer renderer(room.building, rays, kSmallCamera);
+  const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
   const View view = renderer.render(looking({-2.5, 0.0, 1.5}, 0.3));
   const cv::Mat measured_m = measure_depth(view, room.building, 5);
   int num_measured = 0;
@@ -30,7 +30,7 @@ TEST(DepthSensor, MeasuresAWholeNumberOfItsUnits) {
 TEST(DepthSensor, SeesPeopleButNoLamps) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Renderer renderer(room.building, rays, kSmallCamera);
+  const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
   const Person person({{-0.5, -1.0, 0}, {-0.5, 1.0, 0}}, 3);
   const View view = renderer.render(looking({-2.5, 0.0, 1.5}, 0.0), person.at(2.0));
   const cv::Mat measured_m = measure_depth(view, room.building, 5);

@@ -201,22 +201,45 @@ TEST(Inertial, IntegrationBetweenSamplesIsRefused) {
   EXPECT_THROW(integrated(true_state(standing, 1.0, {}), samples, {}, 0.5), core::ContractError);
 }
 
-// Velocity by the motion, biases by the samples: a unit that stands measures nothing else.
+// What a clean unit would say and how fast it moves, by differences of poses alone.
+struct Differenced {
+  Eigen::Vector3d velocity_m_s;
+  Eigen::Vector3d turning_rad_s;
+  Eigen::Vector3d specific_force_m_s2;
+};
+
+Differenced differenced(const Motion& motion, double stamp_s) {
+  constexpr double kStep_s = 1e-3;
+  const core::Rigid3 before = motion.world_from_body(stamp_s - kStep_s);
+  const core::Rigid3 now = motion.world_from_body(stamp_s);
+  const core::Rigid3 after = motion.world_from_body(stamp_s + kStep_s);
+  const Eigen::Vector3d acceleration_m_s2 =
+      (after.translation - 2.0 * now.translation + before.translation) / (kStep_s * kStep_s);
+  return {(after.translation - before.translation) / (2.0 * kStep_s),
+          core::log_so3(before.rotation.conjugate() * after.rotation) / (2.0 * kStep_s),
+          now.rotation.conjugate() * (acceleration_m_s2 + Eigen::Vector3d(0, 0, kGravity_m_s2))};
+}
+
 TEST(Inertial, TheTruthAtAFrameIsTheVelocityAndTheBiasOfTheLastSample) {
   InertialNoise noise;
   noise.gyroscope_noise_rad_s_sqrt_hz = 0.0;
   noise.accelerometer_noise_m_s2_sqrt_hz = 0.0;
-  const Motion standing({.steps = {Stand{2.0}}}, 1);
-  const auto samples = inertial_samples(standing, noise, 5);
-  const auto truth = inertial_truth(standing, inertial_biases(standing, noise, 5), {0.0, 0.0667});
+  const Motion walking(tour(Carrier::kWalker), 3);
+  const auto samples = inertial_samples(walking, noise, 5);
+  const auto truth = inertial_truth(walking, inertial_biases(walking, noise, 5), {2.0, 2.0667});
   ASSERT_EQ(truth.size(), 2U);
-  EXPECT_EQ(truth[1].stamp_s, 0.0667);
-  for (const auto& [state, sample] : {std::pair(truth[0], samples[0]), {truth[1], samples[13]}}) {
-    const Eigen::Vector3d turning_rad_s =
-        sample.angular_velocity_rad_s - standing.angular_velocity_rad_s(sample.stamp_s);
-    EXPECT_LT((state.gyroscope_bias_rad_s - turning_rad_s).norm(), 1e-12);
-    EXPECT_GT(state.gyroscope_bias_rad_s.norm(), 1e-4);
-    EXPECT_EQ(state.velocity_m_s, standing.velocity_m_s(state.stamp_s));
+  EXPECT_EQ(truth[1].stamp_s, 2.0667);
+  for (const auto& [state, sample] :
+       {std::pair(truth[0], samples[400]), {truth[1], samples[413]}}) {
+    EXPECT_LT((state.velocity_m_s - differenced(walking, state.stamp_s).velocity_m_s).norm(), 1e-4);
+    EXPECT_GT(state.velocity_m_s.norm(), 0.5);
+    const Differenced clean = differenced(walking, sample.stamp_s);
+    const Eigen::Vector3d gyroscope_rad_s = sample.angular_velocity_rad_s - clean.turning_rad_s;
+    EXPECT_LT((state.gyroscope_bias_rad_s - gyroscope_rad_s).norm(), 1e-4);
+    EXPECT_GT(state.gyroscope_bias_rad_s.norm(), 5e-4);
+    const Eigen::Vector3d accelerometer_m_s2 = sample.acceleration_m_s2 - clean.specific_force_m_s2;
+    EXPECT_LT((state.accelerometer_bias_m_s2 - accelerometer_m_s2).norm(), 2e-3);
+    EXPECT_GT(state.accelerometer_bias_m_s2.norm(), 1e-2);
   }
 }
 

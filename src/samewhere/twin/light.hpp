@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/twin/ray_scene.hpp>
 #include <samewhere/twin/surface.hpp>
 #include <samewhere/twin/surface_colours.hpp>
@@ -29,8 +28,7 @@ struct Emitter {
 class Light {
  public:
   // Rectangles and rays must outlive it.
-  Light(const std::vector<Rectangle>& rectangles, const RayScene& rays,
-        int num_threads = core::num_hardware_threads());
+  Light(const std::vector<Rectangle>& rectangles, const RayScene& rays, int num_threads);
 
   // `right_up_m`: of a point of the rectangle, from its corner.
   Colour at(int rectangle, const Eigen::Vector2f& right_up_m) const {

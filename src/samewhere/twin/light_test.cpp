@@ -21,7 +21,7 @@ float expected_below(const Rectangle& lamp) {
 TEST(Light, InABlackRoomItFallsWithTheSquareOfTheDistance) {
   const TestRoom room(Colour::Zero());
   const RayScene rays(room.building.rectangles);
-  const Light light(room.building.rectangles, rays);
+  const Light light(room.building.rectangles, rays, kNumThreads);
   const float below = light.at(TestRoom::kFloor, {3.0F, 2.0F})[0];
   EXPECT_NEAR(below, expected_below(room.building.rectangles.back()), 0.05F * below);
   const float aside = light.at(TestRoom::kFloor, {5.0F, 2.0F})[0];
@@ -34,8 +34,8 @@ TEST(Light, BrightWallsSendItOn) {
   const TestRoom dark(Colour::Zero());
   const TestRoom bright(Colour::Constant(0.7F));
   const RayScene rays(dark.building.rectangles);
-  const Light direct(dark.building.rectangles, rays);
-  const Light all(bright.building.rectangles, rays);
+  const Light direct(dark.building.rectangles, rays, kNumThreads);
+  const Light all(bright.building.rectangles, rays, kNumThreads);
   // the ceiling sees no lamp, only what the floor and the walls send up
   EXPECT_EQ(direct.at(1, {1.0F, 1.0F})[0], 0.0F);
   EXPECT_GT(all.at(1, {1.0F, 1.0F})[0], 0.1F * all.at(TestRoom::kFloor, {3.0F, 2.0F})[0]);
@@ -50,7 +50,7 @@ TEST(Light, ABoardInTheWayCastsItsShadow) {
   room.add({-1.0F, 0.5F, 0.99F}, Eigen::Vector3f::UnitX(), -Eigen::Vector3f::UnitY(), {1.0F, 1.0F},
            paint);
   const RayScene rays(room.building.rectangles);
-  const Light light(room.building.rectangles, rays);
+  const Light light(room.building.rectangles, rays, kNumThreads);
   EXPECT_LT(light.at(TestRoom::kFloor, {2.3F, 2.0F})[0], 1e-3F);
   EXPECT_GT(light.at(TestRoom::kFloor, {3.5F, 2.0F})[0], 0.05F);
   const float edge = light.at(TestRoom::kFloor, {3.0F, 2.0F})[0];
@@ -68,7 +68,7 @@ TEST(Light, ASmallSignUnderALampLeavesNoBlotchesOfItsColour) {
   room.add({-0.18F, -0.01F, 2.72F}, x, z, {0.36F, 0.16F}, paint);
   room.add({0.18F, 0.01F, 2.72F}, -x, z, {0.36F, 0.16F}, paint);
   const RayScene rays(room.building.rectangles);
-  const Light light(room.building.rectangles, rays);
+  const Light light(room.building.rectangles, rays, kNumThreads);
   constexpr int kWall = 2;
   constexpr float kStep_m = 0.1F;
   for (float up_m = 0.3F; up_m < 2.7F; up_m += kStep_m) {
@@ -85,7 +85,7 @@ TEST(Light, ASmallSignUnderALampLeavesNoBlotchesOfItsColour) {
 TEST(Light, AThingInTheRoomIsLitLikeTheSurfaceItLiesOn) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Light light(room.building.rectangles, rays);
+  const Light light(room.building.rectangles, rays, kNumThreads);
   for (const Eigen::Vector2f& at : {Eigen::Vector2f(3.0F, 2.0F), Eigen::Vector2f(4.3F, 1.2F)}) {
     const float on_floor = light.at(TestRoom::kFloor, at)[1];
     const float on_thing =

@@ -24,7 +24,7 @@ constexpr int kBarSides = 8;
 TEST(MovingThings, WhatIsRoundShowsNoSeamsBetweenItsSides) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Light light(room.building.rectangles, rays);
+  const Light light(room.building.rectangles, rays, kNumThreads);
   const auto rectangles =
       things_in_room({.low_m = 0.5F, .half_m = {0.2F, 0.12F}, .num_sides = kPostSides},
                      {.from_m = {0.5F, 0.5F, 0.0F},
@@ -52,7 +52,7 @@ TEST(MovingThings, WhatIsRoundShowsNoSeamsBetweenItsSides) {
 TEST(MovingThings, WhatIsRoundIsBrighterTowardsTheLamp) {
   const TestRoom room(Colour::Constant(0.3F));
   const RayScene rays(room.building.rectangles);
-  const Light light(room.building.rectangles, rays);
+  const Light light(room.building.rectangles, rays, kNumThreads);
   const auto rectangles = things_in_room(
       {.low_m = 0.5F, .half_m = {0.15F, 0.15F}, .num_sides = kPostSides}, {.num_sides = kBarSides});
   MovingThings things(rectangles, light);

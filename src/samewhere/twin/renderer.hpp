@@ -32,7 +32,7 @@ class Renderer {
   // Building and rays must outlive the renderer. Computes the light on all surfaces: a fraction of
   // a second for a floor.
   Renderer(const Building& building, const RayScene& rays, const core::Camera& camera,
-           int num_threads = core::num_hardware_threads());
+           int num_threads);
 
   View render(const core::Rigid3& world_from_camera) const { return render(world_from_camera, {}); }
   // With things that are not part of the building, say people: they are lit by what surrounds them

@@ -49,7 +49,7 @@ TEST(Renderer, EveryPixelSeesWhatASingleRayMeets) {
   const Building& building = *walk.visits().front().building;
   const RayScene& rays = *walk.visits().front().rays;
   const core::Camera camera = kTwinCamera;
-  const Renderer renderer(building, rays, camera);
+  const Renderer renderer(building, rays, camera, kNumThreads);
   const core::Rigid3 world_from_camera = walk.walk().poses[30].world_from_camera;
   const View view = renderer.render(world_from_camera);
   const Eigen::Vector3f position = world_from_camera.translation.cast<float>();
@@ -77,8 +77,8 @@ TEST(Renderer, EveryPixelSeesWhatASingleRayMeets) {
 TEST(Renderer, TheSamePlaceGivesTheSameBytes) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Renderer first(room.building, rays, kSmallCamera);
-  const Renderer again(room.building, rays, kSmallCamera);
+  const Renderer first(room.building, rays, kSmallCamera, kNumThreads);
+  const Renderer again(room.building, rays, kSmallCamera, kNumThreads);
   const Person person({{-2, 0, 0}, {2, 0, 0}}, 4);
   const core::Rigid3 pose = looking({-2.5, 0.3, 1.5}, 0.0);
   const View one = first.render(pose, person.at(1.0));
@@ -91,7 +91,7 @@ TEST(Renderer, TheSamePlaceGivesTheSameBytes) {
 TEST(Renderer, WhatMovesHidesWhatIsBehindIt) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Renderer renderer(room.building, rays, kSmallCamera);
+  const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
   const core::Rigid3 pose = looking({-2.5, 0.0, 1.5}, 0.0);
   const auto box = crate({0.5F, -0.3F, 1.2F}, {1.0F, 0.3F, 1.8F});
   const View empty = renderer.render(pose);
@@ -113,7 +113,7 @@ TEST(Renderer, WhatMovesHidesWhatIsBehindIt) {
 TEST(Renderer, AThingBehindAWallStaysHidden) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Renderer renderer(room.building, rays, kSmallCamera);
+  const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
   const core::Rigid3 pose = looking({-2.5, 0.0, 1.5}, 0.0);
   const auto box = crate({4.0F, -0.3F, 1.2F}, {4.5F, 0.3F, 1.8F});
   EXPECT_TRUE(is_same(renderer.render(pose).surface, renderer.render(pose, box).surface));
@@ -123,8 +123,8 @@ TEST(Renderer, WhatMovesIsLitByTheRoomAndDarkensTheFloorBelowIt) {
   const TestRoom room(Colour::Constant(0.5F));
   const TestRoom dim(Colour::Constant(0.5F), 1.0F);
   const RayScene rays(room.building.rectangles);
-  const Renderer renderer(room.building, rays, kSmallCamera);
-  const Renderer with_dim_lamp(dim.building, rays, kSmallCamera);
+  const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
+  const Renderer with_dim_lamp(dim.building, rays, kSmallCamera, kNumThreads);
   const core::Rigid3 pose = looking({-2.5, 0.0, 1.2}, 0.0);
   const auto box = crate({0.5F, -0.3F, 0.02F}, {1.0F, 0.3F, 0.6F});
   const View view = renderer.render(pose, box);
@@ -151,7 +151,7 @@ TEST(Renderer, APolishedFloorMirrorsTheLampWhereTheEyeHasIt) {
     core::Rigid3 pose = looking({x_m, 0.0, 1.0}, 0.0);
     const double down_rad = std::atan2(1.0 + TestRoom::kLamp_m, 2.5);
     pose.rotation *= Eigen::Quaterniond(Eigen::AngleAxisd(-down_rad, Eigen::Vector3d::UnitX()));
-    const Renderer renderer(room.building, rays, kSmallCamera);
+    const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
     return mean_of(renderer.render(pose).radiance.at<cv::Vec3f>(60, 80));
   };
   const float matt = middle_from(-2.5);
@@ -167,7 +167,7 @@ TEST(Renderer, APolishedFloorMirrorsTheLampWhereTheEyeHasIt) {
 TEST(Renderer, TheMeterReadsTheMeanOfThePicture) {
   const TestRoom room(Colour::Constant(0.5F));
   const RayScene rays(room.building.rectangles);
-  const Renderer renderer(room.building, rays, kSmallCamera);
+  const Renderer renderer(room.building, rays, kSmallCamera, kNumThreads);
   for (const double heading_rad : {0.0, 1.0, 2.5}) {
     const core::Rigid3 pose = looking({-1.0, 0.3, 1.2}, heading_rad);
     const cv::Scalar mean = cv::mean(renderer.render(pose).radiance);

@@ -4,8 +4,14 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/stage_thread.hpp>
+#include <samewhere/twin/config.hpp>
 
 namespace samewhere::twin {
+
+// How many threads the settings ask for, at least 1.
+inline int num_threads(const Config& config) {
+  return config.num_workers > 0 ? config.num_workers : core::num_hardware_threads();
+}
 
 // Calls work(i) for 0 <= i < count on so many threads, the caller's among them: on one, no other is
 // started. What work(i) does must not depend on the others. Throws what work throws; of several the

@@ -45,8 +45,8 @@ float tolerance_m(float depth_m) { return 0.05F + 0.04F * depth_m; }
 
 bool looks_alike(const Material& a, const Material& b) {
   constexpr float kMaxOwnRatio = 0.5F;
-  return a.finish == b.finish && a.pattern_seed == b.pattern_seed && a.own_ratio <= kMaxOwnRatio &&
-         b.own_ratio <= kMaxOwnRatio;
+  return a.finish == b.finish && a.number == b.number && a.pattern_seed == b.pattern_seed &&
+         a.own_ratio <= kMaxOwnRatio && b.own_ratio <= kMaxOwnRatio;
 }
 
 // Whether the match can see anything that the query sees: cheap, and never wrongly no.

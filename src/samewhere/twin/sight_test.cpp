@@ -196,6 +196,9 @@ TEST(Alike, NeedsTheSamePatternAndLittleOfItsOwn) {
   other = wall;
   other.finish = Finish::kCork;
   EXPECT_EQ(alike(wall, other), 0.0);
+  other = wall;
+  other.number = 1;
+  EXPECT_EQ(alike(wall, other), 0.0) << "another design, or the number of another room";
 }
 
 }  // namespace

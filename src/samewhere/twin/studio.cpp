@@ -5,6 +5,7 @@
 #include <samewhere/twin/depth_sensor.hpp>
 #include <samewhere/twin/motion_blur.hpp>
 #include <samewhere/twin/photograph.hpp>
+#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/studio.hpp>
 
 namespace samewhere::twin {

@@ -9,6 +9,8 @@
 
 namespace samewhere::twin {
 
+inline constexpr int kNumThreads = 2;  // that compute the light in tests
+
 // For tests: a room 6 m long (x), 4 m wide and 3 m high around the origin, with a square lamp of
 // half a metre under the middle of the ceiling.
 struct TestRoom {

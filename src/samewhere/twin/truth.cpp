@@ -217,12 +217,17 @@ void register_pair(const Judge& judge, const Judged& query, const Judged& match,
   }
 }
 
-void judge_pairs(const Judge& judge, const std::vector<Judged>& frames, WalkTruth& truth) {
+void judge_pairs(const Judge& judge, const std::vector<Judged>& frames, const WatchJudging& watch,
+                 WalkTruth& truth) {
+  const auto num_pairs = [](std::size_t num_frames) {
+    return static_cast<int>(num_frames * (num_frames + 1) / 2);
+  };
   for (std::size_t query = 0; query < frames.size(); ++query) {
     const std::vector<std::vector<Kin>> kin = judge.kin_by_visit(frames[query]);
     for (std::size_t match = 0; match <= query; ++match) {
       register_pair(judge, frames[query], frames[match], kin, truth);
     }
+    if (watch) watch(num_pairs(query + 1), num_pairs(frames.size()));
   }
 }
 
@@ -236,7 +241,8 @@ void check(const Walk& walk, const std::vector<Visit>& visits) {
 
 }  // namespace
 
-WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera) {
+WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera,
+                   const WatchJudging& watch) {
   check(walk, visits);
   WalkTruth truth{.frames = frames_of(walk, visits)};
   const bool is_long = walk.poses.size() > static_cast<std::size_t>(kMaxFramesOfMatrix);
@@ -249,7 +255,7 @@ WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const cor
        i += static_cast<std::size_t>(truth.stride_frames)) {
     frames.push_back(judge.look(walk.poses[i], static_cast<int>(i), truth.frames[i]));
   }
-  judge_pairs(judge, frames, truth);
+  judge_pairs(judge, frames, watch, truth);
   return truth;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,13 +63,17 @@ struct WalkTruth {
 // Longer walks are long: a matrix over all their frames would be too large.
 inline constexpr int kMaxFramesOfMatrix = 3000;
 
+// Hears how many pairs of frames of how many are judged; what it throws ends the judging.
+using WatchJudging = std::function<void(int num_judged, int num_pairs)>;
+
 // The truth of a walk from the exact geometry of the building (docs/evaluation.md, pr-v2; Eye):
 // same place: overlap at least 0.3 both ways and viewing directions within 45 degrees; different:
 // overlap below 0.05 both ways; near: the rest. A dark frame shows no place: it is different from
 // all, itself included; its room is looked up in the last visit before it. All visits must number
 // their units alike. Of a walk of more than kMaxFramesOfMatrix frames there are no matrices, and
 // loops and impostors are sought among every 15th frame only.
-WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera);
+WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera,
+                   const WatchJudging& watch = nullptr);
 
 // What the rest of the system compares with. Without impostors if the walk is long: to name a part
 // of them would make others look like none.

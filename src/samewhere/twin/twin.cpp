@@ -1,3 +1,4 @@
+#include <exception>
 #include <optional>
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 
 #include <samewhere/twin/frame_workers.hpp>
 #include <samewhere/twin/picture_cache.hpp>
+#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/source_hash.hpp>
 #include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/twin.hpp>
@@ -39,7 +41,32 @@ class TwinSource : public core::Source {
   }
 
   std::optional<core::Frame> next() override {
-    if (!workers_) start(0);
+    if (failure_) std::rethrow_exception(failure_);
+    try {
+      return next_frame();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+
+  core::Truth truth() const override {
+    core::Truth truth = core_truth(walk_->walk().poses, walk_->truth());
+    truth.inertial = walk_->inertial_truth();
+    return truth;
+  }
+
+ private:
+  struct Made {
+    core::Frame frame;                   // without images: missing, and there is no studio yet
+    std::optional<std::string> refusal;  // of the cache to keep the pictures
+  };
+
+  std::optional<core::Frame> next_frame() {
+    if (!workers_) {
+      if (!cache_.load(0)) studio_.emplace(*walk_, config_);
+      start(0);
+    }
     std::optional<Made> made = workers_->next();
     if (made && made->frame.images.empty()) {
       const int missing = static_cast<int>(made->frame.id.value());
@@ -55,18 +82,6 @@ class TwinSource : public core::Source {
     }
     return std::move(made->frame);
   }
-
-  core::Truth truth() const override {
-    core::Truth truth = core_truth(walk_->walk().poses, walk_->truth());
-    truth.inertial = walk_->inertial_truth();
-    return truth;
-  }
-
- private:
-  struct Made {
-    core::Frame frame;                   // without images: missing, and there is no studio yet
-    std::optional<std::string> refusal;  // of the cache to keep the pictures
-  };
 
   void start(int first) {
     workers_.emplace(walk_->num_frames() - first, num_threads(config_),
@@ -91,6 +106,7 @@ class TwinSource : public core::Source {
   PictureCache cache_;
   std::optional<Studio> studio_;  // while no worker runs it may be opened
   bool is_refusal_told_ = false;
+  std::exception_ptr failure_;                 // no frames come after it
   std::optional<FrameWorkers<Made>> workers_;  // last: they end before what they use
 };
 

@@ -14,8 +14,8 @@ namespace samewhere::twin {
 // camera or two, depth, inertial samples and exact truth. `spec` is
 // "twin:PRESET?seed=3&similarity=0.9", see spec.hpp; throws InputError if it is not. The same spec
 // and config give the same bytes. The next() of the first picture that is not kept takes a little
-// longer: it computes the light. Pictures are kept in the folder that SAMEWHERE_CACHE names, if it
-// does (picture_cache.hpp).
+// longer: it computes the light. After an error every next() throws the same one. Pictures are kept
+// in the folder that SAMEWHERE_CACHE names, if it does (picture_cache.hpp).
 std::unique_ptr<core::Source> open_twin(const std::string& spec, const Config& config);
 
 // The same of a walk that is there already. It must not be empty.

@@ -1,11 +1,15 @@
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <opencv2/features2d.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/interrupt.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/camera.hpp>
 #include <samewhere/twin/twin.hpp>
@@ -118,6 +122,24 @@ TEST(Twin, TruthIsMadeOnceAndTellsWhatTheInertialUnitDoes) {
               walk->motion().velocity_m_s(truth.trajectory[i].stamp_s));
     EXPECT_GT(truth.inertial[i].accelerometer_bias_m_s2.norm(), 0.0);
   }
+}
+
+// At the end an interrupt, which cannot be taken back within a process.
+TEST(Twin, WhoWatchesTheTruthMayEndIt) {
+  const Walkthrough walk(parse_spec("twin:office-loop?seed=3"), {.num_frames = 3});
+  const auto refuse = [](int /*num_judged*/, int /*num_pairs*/) {
+    throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(walk.truth(refuse), std::runtime_error);
+  std::vector<std::pair<int, int>> heard;
+  const WalkTruth& truth =
+      walk.truth([&](int num_judged, int num_pairs) { heard.emplace_back(num_judged, num_pairs); });
+  EXPECT_EQ(heard, (std::vector<std::pair<int, int>>{{1, 6}, {3, 6}, {6, 6}}));
+  EXPECT_EQ(truth.frames.size(), 3U);
+  const Walkthrough other(parse_spec("twin:office-loop?seed=3"), {.num_frames = 3});
+  core::catch_interrupts();
+  std::raise(SIGINT);
+  EXPECT_THROW(watched_truth(other), core::Interrupted);
 }
 
 TEST(Twin, ABadSpecIsRefused) { EXPECT_THROW(open_twin("twin:castle", {}), core::InputError); }

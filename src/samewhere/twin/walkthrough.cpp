@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/progress.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/twin/camera.hpp>
 #include <samewhere/twin/inertial.hpp>
@@ -98,9 +100,18 @@ std::vector<core::InertialTruth> Walkthrough::inertial_truth() const {
                               stamps_s);
 }
 
-const WalkTruth& Walkthrough::truth() const {
-  if (!truth_) truth_ = truth_of(walk_, visits_, rig_->cameras.front());
+const WalkTruth& Walkthrough::truth(const WatchJudging& watch) const {
+  if (!truth_) truth_ = truth_of(walk_, visits_, rig_->cameras.front(), watch);
   return *truth_;
+}
+
+const WalkTruth& watched_truth(const Walkthrough& walk) {
+  std::optional<core::Progress> progress;
+  return walk.truth([&](int num_judged, int num_pairs) {
+    if (!progress) progress.emplace("pairs of frames judged", num_pairs);
+    progress->update(num_judged);
+    core::stop_if_interrupted();
+  });
 }
 
 }  // namespace samewhere::twin

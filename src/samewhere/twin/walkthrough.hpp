@@ -44,8 +44,9 @@ class Walkthrough {
   std::vector<WheelSample> wheels() const;
   // Of every frame.
   std::vector<core::InertialTruth> inertial_truth() const;
-  // Exact. The first call takes some seconds, later ones none; from one thread.
-  const WalkTruth& truth() const;
+  // Exact. The first call takes some seconds, later ones none; from one thread. What `watch` throws
+  // comes out, and nothing is kept.
+  const WalkTruth& truth(const WatchJudging& watch = nullptr) const;
 
  private:
   // Measured since the frame before, that frame's own moment excluded; of frame 0 the first sample.
@@ -63,5 +64,8 @@ class Walkthrough {
   std::vector<core::ImuSample> imu_;
   mutable std::optional<WalkTruth> truth_;  // as soon as somebody has asked
 };
+
+// truth() with a progress line on stderr. Throws core::Interrupted after Ctrl-C.
+const WalkTruth& watched_truth(const Walkthrough& walk);
 
 }  // namespace samewhere::twin
