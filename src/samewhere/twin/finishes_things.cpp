@@ -40,13 +40,11 @@ Colour plastic(const Material& m, const TexturePoint& p) {
 
 Colour steel(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
-  const TexturePoint stretched{p.u_m * 0.05F, p.v_m, p.footprint_m};
+  const TexturePoint stretched{p.u_m * 0.02F, p.v_m, p.footprint_m};
   const float brushed =
-      0.12F * octave_noise(stretched, {.wavelength_m = 0.02F, .count = 4, .gain = 0.8F}, grain);
-  // what is left of reflections: broad soft bands
-  const float sheen =
-      0.12F * octave_noise(p, {.wavelength_m = 0.7F, .count = 2, .gain = 0.5F}, grain + 9);
-  return m.colour * ((1.0F + brushed + sheen) * marked(p, m, 0.35F));
+      0.07F * octave_noise(stretched, {.wavelength_m = 0.006F, .count = 3, .gain = 0.8F}, grain);
+  constexpr float kScattered = 0.75F;  // the rest is mirrored
+  return m.colour * (kScattered * (1.0F + brushed) * marked(p, m, 0.3F));
 }
 
 Colour cork(const Material& m, const TexturePoint& p) {

@@ -89,7 +89,7 @@ void Palette::choose_fittings(Draws& draws) {
   ceiling_design = draws.design();
   ceiling_kind = Choices(ceiling_design).next(kNumCeilings);
   constexpr std::array kSkirtings_m = {0.09F, 0.06F, 0.12F, 0.16F};
-  skirting_m = Choices(draws.design()).of(kSkirtings_m);
+  skirting_m = Choices(draws.common_seed()).of(kSkirtings_m);  // one for all: units meet
 
   stair_design = draws.design();
 
