@@ -52,7 +52,7 @@ struct CeilingTile {
   float hole_cell_m;
   float holes, cracks;  // light that they swallow
 };
-constexpr std::array<CeilingTile, 5> kCeilingTiles = {
+constexpr std::array<CeilingTile, kNumCeilingTiles> kCeilingTiles = {
     {{0.6F, 0.6F, 0.012F, 1.0F, 0.045F, 0.6F, 0.65F},
      {0.3F, 1.5F, 0.004F, 0.6F, 0.02F, 0.4F, 0.0F},
      {0.6F, 1.2F, 0.012F, 1.0F, 0.045F, 0.0F, 0.25F},

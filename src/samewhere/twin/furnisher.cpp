@@ -60,9 +60,8 @@ Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plan
 
 // Another design is another pattern: look-alikes with unlike ceilings do not count as alike.
 Material tiled_ceiling(const Piece& piece) {
-  constexpr int kPlastered = 5;
   const Palette& palette = piece.palette();
-  const bool is_plastered = palette.ceiling_kind == kPlastered;
+  const bool is_plastered = palette.ceiling_kind == kPlasteredCeiling;
   Material material = piece.running(is_plastered ? Finish::kCeilingPlaster : Finish::kCeiling,
                                     palette.ceiling, paints::kWhite, kCeilingPlane);
   material.pattern_seed = scramble(material.pattern_seed + palette.ceiling_design);

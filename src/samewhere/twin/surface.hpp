@@ -47,6 +47,19 @@ enum class Finish : std::uint8_t {
   kCeilingPlaster,
 };
 
+// Of Finish::kLamp, Material::number.
+enum class LampFace : std::uint8_t { kRibbed, kOpal, kLouvre, kTubes, kRound };
+
+// What hangs before a window: of Finish::kBlinds, Material::number, which counts on through
+// kNumSlatWidths for each.
+enum class Dressing : std::uint8_t { kBroad, kFine, kUpright, kCurtain, kShade, kCount };
+inline constexpr int kNumDressings = static_cast<int>(Dressing::kCount);
+inline constexpr int kNumSlatWidths = 4;
+
+// Of Finish::kCeiling, Material::number; one more is plastered.
+inline constexpr int kNumCeilingTiles = 5;
+inline constexpr int kPlasteredCeiling = kNumCeilingTiles;
+
 // What a surface is made of. Every finish reads the part that it needs.
 struct Material {
   Finish finish = Finish::kPaint;
