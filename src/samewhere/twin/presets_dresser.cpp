@@ -306,7 +306,7 @@ void Dresser::add_edges(int space, const Dress& dress) {
 void Dresser::add_edge(int space, const TopEdge& edge, Use use, const Dress& dress) {
   const std::uint64_t end = furnisher_.num_things() + 3;
   const Eigen::Vector2f& cornice_m = edge_.cornice_m;
-  if (cornice_m.x() > 0.0F) {
+  if (dress.has_cornices && cornice_m.x() > 0.0F) {
     Wall wall = edge.wall;
     constexpr float kHair_m = 0.003F;  // behind the front of the cornice around the corner
     const Eigen::Vector2f beyond_m =

@@ -44,6 +44,7 @@ struct Dress {
   bool has_ducts = true;     // along walls with doors
   bool has_pipes = false;    // along plain walls, below the ceiling
   bool has_lamps = true;
+  bool has_cornices = true;
   bool has_extinguishers = true;  // a sign instead
 };
 

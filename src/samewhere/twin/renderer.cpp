@@ -113,22 +113,26 @@ Colour Renderer::without_texture(const Ray& ray, const Hit& hit) const {
   return mean_reflectance(r.material) * light;
 }
 
-// The mean of what rays within a cone around a direction meet, lamps dimmed to `brightest`. The
-// same rays everywhere, spread evenly over the cone: nothing sparkles.
-Colour Renderer::blurred(const Ray& axis, float half_angle_rad, float brightest) const {
-  constexpr float kRaysPerRad = 90.0F;
+// The mean of what rays around a mirrored one meet, lamps dimmed to `brightest`. A rough surface
+// seen aslant blurs less across the plane of sight and normal than along it. The same rays
+// everywhere: nothing sparkles.
+Colour Renderer::blurred(const Ray& axis, const Eigen::Vector3f& normal, float half_angle_rad,
+                         float brightest) const {
+  constexpr float kRaysPerRad = 110.0F;
   constexpr std::size_t kMostRays = 16;
   constexpr float kGoldenAngle_rad = 2.3999632F;
   const auto num_rays =
       std::min(kMostRays, 1 + static_cast<std::size_t>(kRaysPerRad * half_angle_rad));
-  const Eigen::Vector3f side = axis.direction.unitOrthogonal();
-  const Eigen::Vector3f other = axis.direction.cross(side);
+  const float cosine = normal.dot(axis.direction);
+  const Eigen::Vector3f across = axis.direction.cross(normal).stableNormalized();
+  const Eigen::Vector3f along = axis.direction.cross(across);
   std::array<Eigen::Vector3f, kMostRays> directions;
   for (std::size_t i = 0; i < num_rays; ++i) {
     const float ratio = (static_cast<float>(i) + 0.5F) / static_cast<float>(num_rays);
     const float out = num_rays == 1 ? 0.0F : half_angle_rad * std::sqrt(ratio);
     const float turn_rad = kGoldenAngle_rad * static_cast<float>(i);
-    directions[i] = axis.direction + out * (std::cos(turn_rad) * side + std::sin(turn_rad) * other);
+    directions[i] = axis.direction + out * std::cos(turn_rad) * along +
+                    out * std::sin(turn_rad) * std::abs(cosine) * across;
   }
   std::array<Hit, kMostRays> hits;
   rays_.first_hits(axis.origin, std::span(directions).first(num_rays),
@@ -165,9 +169,9 @@ Colour Renderer::mirrored(const Ray& ray, const Hit& hit) const {
       kStraightOn + (1.0F - kStraightOn) * aslant * aslant * aslant * aslant * aslant;
   const Ray back{point + kOffSurface_m * r.normal(), direction - 2.0F * towards * normal};
   const float roughness_rad = r.material.roughness_rad;
+  const float brightest = roughness_rad > 0.0F ? kBrightestElsewhere : kBrightestInGlass;
   return std::min(r.material.gloss * share, 1.0F) *
-         blurred(back, roughness_rad,
-                 roughness_rad > 0.0F ? kBrightestElsewhere : kBrightestInGlass);
+         blurred(back, r.normal(), roughness_rad, brightest);
 }
 
 // Adds what the surface mirrors: it moves over the surface as the eye moves. Computed for some
