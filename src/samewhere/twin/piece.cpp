@@ -19,7 +19,7 @@ Stance world_from_unit(const core::Rigid3& world_from_unit, const Stance& stand)
 float usual_gloss(Finish finish) {
   switch (finish) {
     case Finish::kSteel:
-      return 6.0F;  // metals mirror more than any varnish
+      return 4.0F;  // metals mirror more than any varnish
     case Finish::kFloorTiles:
       return 0.8F;
     case Finish::kPlate:

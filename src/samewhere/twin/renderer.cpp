@@ -154,7 +154,7 @@ Colour Renderer::mirrored(const Ray& ray, const Hit& hit) const {
   constexpr float kOffSurface_m = 1e-3F;
   // what is not quite smooth leaves of a lamp
   constexpr float kBrightestInGlass = 4.0F;
-  constexpr float kBrightestElsewhere = 2.5F;
+  constexpr float kBrightestElsewhere = 1.5F;
   const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hit.rectangle)];
   const Eigen::Vector3f point = ray.origin + hit.reach * ray.direction;
   const Eigen::Vector2f wave = r.right_up_m(point) / kWave_m;
