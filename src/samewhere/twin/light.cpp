@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kOffSurface_m = 1e-3F;
 constexpr float kEmitterRange_m = 7.0F;
-constexpr int kNumBakeRays = 64;
+constexpr int kNumBakeRays = 32;
 constexpr int kNumMovingRays = 16;
 // light of all bounces over that of the first, in a corridor whose surfaces reflect 40 %
 constexpr float kAllBounces = 1.0F / (1.0F - 0.4F);

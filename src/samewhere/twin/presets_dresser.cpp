@@ -114,7 +114,7 @@ constexpr std::array<FillingSize, 23> kFillings = {
      {Filling::kSwitch, 0.10F, 0.02F},       {Filling::kCabinet, 0.92F, 0.36F},
      {Filling::kExtinguisher, 0.22F, 0.19F}, {Filling::kTwoPosters, 1.40F, 0.03F},
      {Filling::kBoard, 1.18F, 0.03F},        {Filling::kPoster, 0.64F, 0.03F},
-     {Filling::kRadiator, 1.20F, 0.13F},     {Filling::kBin, 0.40F, 0.40F},
+     {Filling::kRadiator, 1.36F, 0.13F},     {Filling::kBin, 0.40F, 0.40F},
      {Filling::kPlant, 0.60F, 0.60F},        {Filling::kChair, 0.60F, 0.60F},
      {Filling::kChair, 0.60F, 0.60F},        {Filling::kCoatRack, 1.00F, 0.25F},
      {Filling::kLeaflets, 0.74F, 0.05F},     {Filling::kLowShelf, 0.90F, 0.31F},
