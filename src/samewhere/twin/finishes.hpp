@@ -35,6 +35,7 @@ float blotted(const Rectangle& rectangle, const TexturePoint& point);
 Colour block_wall(const Material& m, const TexturePoint& p);
 Colour brick_wall(const Material& m, const TexturePoint& p);
 Colour plaster(const Material& m, const TexturePoint& p);
+Colour ceiling_plaster(const Material& m, const TexturePoint& p);
 Colour concrete(const Material& m, const TexturePoint& p);
 Colour carpet(const Material& m, const TexturePoint& p);
 Colour floor_tiles(const Material& m, const TexturePoint& p);

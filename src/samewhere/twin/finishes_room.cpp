@@ -35,10 +35,11 @@ float masonry(const TexturePoint& p, const Bond& bond, const Grain& grain) {
          (1.0F - bond.joint * on_line(to_joint_m, bond.half_joint_m, p.footprint_m));
 }
 
-// Paint with a darker dado and the line above it.
+// Paint with a darker dado and the line above it, if it has two colours.
 Colour dado_paint(const Material& m, const TexturePoint& p) {
   constexpr float kDado_m = 1.05F;
   constexpr float kLine_m = 0.02F;
+  if ((m.colour == m.second).all()) return m.colour;
   const float dado = beyond(kDado_m - p.v_m, p.footprint_m);
   const float line = inside(p.v_m, kDado_m, kDado_m + kLine_m, p.footprint_m);
   return mixed(m.colour, m.second, dado) * (1.0F - 0.4F * line);
@@ -51,12 +52,30 @@ struct CeilingTile {
   float hole_cell_m;
   float holes, cracks;  // light that they swallow
 };
-constexpr std::array<CeilingTile, 5> kCeilingTiles = {
+constexpr std::array<CeilingTile, kNumCeilingTiles> kCeilingTiles = {
     {{0.6F, 0.6F, 0.012F, 1.0F, 0.045F, 0.6F, 0.65F},
      {0.3F, 1.5F, 0.004F, 0.6F, 0.02F, 0.4F, 0.0F},
      {0.6F, 1.2F, 0.012F, 1.0F, 0.045F, 0.0F, 0.25F},
      {1.8F, 0.1F, 0.009F, 0.25F, 0.045F, 0.05F, 0.0F},
      {0.5F, 0.5F, 0.006F, 0.5F, 0.03F, 0.65F, 0.0F}}};
+
+// Share of light that traffic leaves of a wall: scuffs of shoes and trolleys near the floor, hands
+// a metre up, more of both in some places than in others.
+float trodden(const TexturePoint& p, const Material& m) {
+  constexpr float kShoes_m = 0.35F;
+  constexpr float kHands_m = 1.1F;
+  constexpr float kAroundHands_m = 0.3F;
+  const float low = clamp01(1.0F - p.v_m / kShoes_m);
+  const float hands = clamp01(1.0F - std::abs(p.v_m - kHands_m) / kAroundHands_m);
+  if (low + hands <= 0.0F) return 1.0F;
+  const Grain grain = grain_of(m) + 70;
+  const float often = clamp01(0.3F + value_noise(p.u_m * 0.9F, 0.0F, grain));
+  const TexturePoint crumpled_p = crumpled(p, grain);
+  const float scuffs = 0.9F * scratches(crumpled_p, {.cell_m = 0.17F, .density = 0.5F}, grain + 1) +
+                       0.2F * spots(crumpled_p, {.cell_m = 0.13F, .density = 0.3F}, grain + 2);
+  const float prints = 0.12F * spots(crumpled_p, {.cell_m = 0.08F, .density = 0.3F}, grain + 3);
+  return 1.0F - often * (low * (0.06F + 0.4F * scuffs) + hands * prints);
+}
 
 // Clouds of dirt a metre across.
 float clouds(const TexturePoint& p, std::uint32_t wear_seed, float strength) {
@@ -68,13 +87,9 @@ float clouds(const TexturePoint& p, std::uint32_t wear_seed, float strength) {
 
 float marked(const TexturePoint& p, const Material& m, float strength) {
   const Grain grain = grain_of(m) + 40;
-  const TexturePoint crumpled_p = crumpled(p, grain);
-  float marks = 0.8F * spots(crumpled_p, {.cell_m = 0.07F, .density = 0.16F}, grain + 2) +
-                0.3F * spots(crumpled_p, {.cell_m = 0.19F, .density = 0.25F}, grain + 3) +
-                0.6F * scratches(crumpled_p, {.cell_m = 0.29F, .density = 0.3F}, grain + 4) +
-                1.2F * spots(p, {.cell_m = 0.03F, .density = 0.04F}, grain + 5);  // chips
+  float marks = 0.35F * scratches(p, {.cell_m = 0.29F, .density = 0.15F}, grain + 4) +
+                0.9F * spots(p, {.cell_m = 0.03F, .density = 0.03F}, grain + 5);  // chips
   const std::uint32_t wear = m.wear_seed;
-  marks += 0.25F * spots(crumpled_p, {.cell_m = 0.37F, .density = 0.1F}, wear);
   constexpr float kFine_m = 0.0032F;
   const float fine = visible_share(kFine_m, p.footprint_m);
   if (fine > 0.0F) {
@@ -105,7 +120,7 @@ float blotted(const Rectangle& rectangle, const TexturePoint& point) {
                         scratches(p, {.cell_m = 0.5F, .density = 0.3F}, seed + 8);
   const float fade = clamp01(4.0F * (1.0F - ratio.norm()));
   const bool is_scratched = (seed & 2U) != 0;
-  const float loss = is_scratched ? 0.6F * strokes : 0.16F * puddle + 0.22F * rim;
+  const float loss = is_scratched ? 0.5F * strokes : 0.08F * puddle + 0.12F * rim;
   return 1.0F - std::min(fade * loss, 0.6F);
 }
 
@@ -114,7 +129,7 @@ Colour block_wall(const Material& m, const TexturePoint& p) {
   const float rough =
       0.03F * octave_slope(p, {.wavelength_m = 0.06F, .count = 4, .gain = 1.7F}, grain + 20);
   const float wear = lerp(0.75F, 0.45F, clamp01(p.v_m / 2.0F));
-  return dado_paint(m, p) * ((1.0F + clouds(p, m.wear_seed, 0.05F) + rough) *
+  return dado_paint(m, p) * ((1.0F + clouds(p, m.wear_seed, 0.03F) + rough) * trodden(p, m) *
                              masonry(p, {}, grain + 30) * marked(p, m, wear));
 }
 
@@ -123,27 +138,30 @@ Colour brick_wall(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
   const float rough =
       0.03F * octave_slope(p, {.wavelength_m = 0.05F, .count = 4, .gain = 1.6F}, grain + 20);
-  return dado_paint(m, p) * ((1.0F + clouds(p, m.wear_seed, 0.05F) + rough) *
+  return dado_paint(m, p) * ((1.0F + clouds(p, m.wear_seed, 0.03F) + rough) *
                              masonry(p, kBricks, grain + 30) * marked(p, m, 0.4F));
 }
 
-Colour plaster(const Material& m, const TexturePoint& p) {
+Colour ceiling_plaster(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
   const float rough =
       0.035F * octave_slope(p, {.wavelength_m = 0.03F, .count = 3, .gain = 1.4F}, grain + 20);
   const float patches =
-      0.035F * octave_noise(p, {.wavelength_m = 0.5F, .count = 4, .gain = 0.6F}, grain + 30);
+      0.012F * octave_noise(p, {.wavelength_m = 0.5F, .count = 4, .gain = 0.7F}, grain + 30);
   return m.colour *
-         ((1.0F + rough + patches + clouds(p, m.wear_seed, 0.04F)) * marked(p, m, 0.42F));
+         ((1.0F + rough + patches + clouds(p, m.wear_seed, 0.02F)) * marked(p, m, 0.42F));
+}
+
+Colour plaster(const Material& m, const TexturePoint& p) {
+  return ceiling_plaster(m, p) * trodden(p, m);
 }
 
 Colour concrete(const Material& m, const TexturePoint& p) {
   constexpr float kBoard_m = 1.25F;
   const Grain grain = grain_of(m);
   const float cast =
-      0.13F * octave_noise(p, {.wavelength_m = 0.45F, .count = 6, .gain = 0.62F}, grain);
-  const float pores = 0.6F * spots(p, {.cell_m = 0.045F, .density = 0.35F}, grain + 8) +
-                      0.35F * spots(p, {.cell_m = 0.16F, .density = 0.3F}, grain + 9);
+      0.07F * octave_noise(p, {.wavelength_m = 0.45F, .count = 6, .gain = 0.75F}, grain);
+  const float pores = 0.6F * spots(p, {.cell_m = 0.026F, .density = 0.2F}, grain + 8);
   const float to_joint_m =
       std::min(to_grid_line_m(p.u_m, 2.0F * kBoard_m), to_grid_line_m(p.v_m, kBoard_m));
   const float joint = on_line(to_joint_m, 0.004F, p.footprint_m);
@@ -237,8 +255,7 @@ Colour ceiling_tiles(const Material& m, const TexturePoint& in_unit) {
   const float shadow_line = on_line(std::abs(to_bar_m - kind.half_bar_m), 0.004F, p.footprint_m);
   const float holes =
       kind.holes * spots(p, {.cell_m = kind.hole_cell_m, .density = 0.7F}, grain + 1) +
-      kind.cracks * scratches(p, {.cell_m = 0.09F, .density = 0.7F}, grain + 2) +
-      0.12F * spots(p, {.cell_m = 0.43F, .density = 0.25F}, m.wear_seed);
+      kind.cracks * scratches(p, {.cell_m = 0.09F, .density = 0.7F}, grain + 2);
   const float fibres =
       0.04F * octave_noise(p, {.wavelength_m = 0.03F, .count = 3, .gain = 0.7F}, grain + 4);
   const Colour board = m.colour * ((1.0F + tile + fibres + clouds(p, m.wear_seed, 0.03F)) *

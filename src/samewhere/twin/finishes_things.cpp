@@ -40,13 +40,11 @@ Colour plastic(const Material& m, const TexturePoint& p) {
 
 Colour steel(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
-  const TexturePoint stretched{p.u_m * 0.05F, p.v_m, p.footprint_m};
+  const TexturePoint stretched{p.u_m * 0.02F, p.v_m, p.footprint_m};
   const float brushed =
-      0.12F * octave_noise(stretched, {.wavelength_m = 0.02F, .count = 4, .gain = 0.8F}, grain);
-  // what is left of reflections: broad soft bands
-  const float sheen =
-      0.12F * octave_noise(p, {.wavelength_m = 0.7F, .count = 2, .gain = 0.5F}, grain + 9);
-  return m.colour * ((1.0F + brushed + sheen) * marked(p, m, 0.35F));
+      0.07F * octave_noise(stretched, {.wavelength_m = 0.006F, .count = 3, .gain = 0.8F}, grain);
+  constexpr float kScattered = 0.75F;  // the rest is mirrored
+  return m.colour * (kScattered * (1.0F + brushed) * marked(p, m, 0.3F));
 }
 
 Colour cork(const Material& m, const TexturePoint& p) {
@@ -167,10 +165,9 @@ Colour lamp(const Rectangle& r, const TexturePoint& p) {
   constexpr float kFrame_m = 0.025F;
   constexpr float kRib_m = 0.1F;
   constexpr float kHousing = 0.05F;  // of the light that the lamp gives
-  enum { kRibbed, kOpal, kLouvre, kTubes, kRound };
   const Eigen::Vector2f& size_m = r.size_m;
-  const int face = r.material.number;
-  if (face == kRound) {
+  const auto face = static_cast<LampFace>(r.material.number);
+  if (face == LampFace::kRound) {
     const Eigen::Vector2f from_middle_m(p.u_m - 0.5F * size_m.x(), p.v_m - 0.5F * size_m.y());
     const float out_m = from_middle_m.norm() - 0.42F * size_m.minCoeff();
     return r.material.colour * lerp(1.0F, kHousing, beyond(out_m, p.footprint_m));
@@ -182,13 +179,13 @@ Colour lamp(const Rectangle& r, const TexturePoint& p) {
   const float along_m = is_along_u ? u : v;
   const float across_m = is_along_u ? v : u;
   float shade = 1.0F;
-  if (face == kRibbed || face == kLouvre) {
+  if (face == LampFace::kRibbed || face == LampFace::kLouvre) {
     shade -= 0.35F * on_line(to_grid_line_m(along_m, kRib_m), 0.004F, p.footprint_m);
   }
-  if (face == kLouvre) {
+  if (face == LampFace::kLouvre) {
     shade -= 0.35F * on_line(to_grid_line_m(across_m, kRib_m), 0.006F, p.footprint_m);
   }
-  if (face == kTubes) {
+  if (face == LampFace::kTubes) {
     const float from_tube_m = std::abs(across_m - 0.25F * size_m.minCoeff());
     shade = lerp(kHousing, 1.0F, on_line(from_tube_m, 0.1F * size_m.minCoeff(), p.footprint_m));
   }
@@ -205,24 +202,23 @@ float through_slats(float x_m, float slat_m, const Grain& grain, float footprint
   return 1.0F - visible_share(slat_m, footprint_m) * (0.45F * phase + 0.2F * bent);
 }
 
-// What hangs before a window: `number` says what and, in fives, how broad its slats are.
+// What hangs before a window.
 float dressing(const Material& m, const TexturePoint& p, const Grain& grain) {
-  enum { kBroad, kFine, kUpright, kCurtain, kShade, kNumKinds };
-  const int step = m.number / kNumKinds;
+  const int step = m.number / kNumDressings;
   const float breadth = 0.7F + 0.2F * static_cast<float>(step);
   const float cord = on_line(to_grid_line_m(p.u_m + 0.2F, 0.55F), 0.004F, p.footprint_m);
-  switch (m.number % kNumKinds) {
-    case kFine:
+  switch (static_cast<Dressing>(m.number % kNumDressings)) {
+    case Dressing::kFine:
       return through_slats(p.v_m, 0.025F * breadth, grain, p.footprint_m) * (1.0F - 0.5F * cord);
-    case kUpright:
+    case Dressing::kUpright:
       return through_slats(p.u_m, 0.09F * breadth, grain, p.footprint_m);
-    case kCurtain: {
+    case Dressing::kCurtain: {
       const TexturePoint stretched{p.u_m, 0.06F * p.v_m, p.footprint_m};
       const float folds = octave_noise(
           stretched, {.wavelength_m = 0.14F * breadth, .count = 3, .gain = 0.6F}, grain + 3);
       return 0.7F * (1.0F + 0.3F * folds);
     }
-    case kShade:
+    case Dressing::kShade:
       return 0.85F + 0.03F * mosaic(p, 0.01F, 0.01F, grain + 4);
     default:
       return through_slats(p.v_m, 0.05F * breadth, grain, p.footprint_m) * (1.0F - 0.5F * cord);

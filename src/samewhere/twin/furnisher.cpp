@@ -29,16 +29,16 @@ std::uint32_t plane_of(const Wall& wall) {
 constexpr std::uint32_t kFloorPlane = 2;
 constexpr std::uint32_t kCeilingPlane = 3;
 
-// Walls of bricks may be built or covered otherwise; paint need not change its colour half way up.
+// Walls of bricks may be built or covered otherwise; paint is that of the walls or of their dados.
 Material stair_wall(const Piece& piece, std::uint32_t plane) {
   constexpr std::array kFinishes = {Finish::kBrick, Finish::kWall, Finish::kPlaster,
                                     Finish::kConcrete};
   const Palette& palette = piece.palette();
   Choices choices(palette.stair_design);
   const Finish finish = choices.of(kFinishes);
-  const bool has_dado = choices.next(2) == 0;
-  Material material =
-      piece.running(finish, palette.wall, has_dado ? palette.dado : palette.wall, plane);
+  // of one colour: a dado would have to follow the steps
+  const Colour& coat = choices.next(2) == 0 ? palette.dado : palette.wall;
+  Material material = piece.running(finish, coat, coat, plane);
   material.pattern_seed = scramble(material.pattern_seed + palette.stair_design);
   return material;
 }
@@ -60,10 +60,9 @@ Material wall_material(const Piece& piece, WallFinish finish, std::uint32_t plan
 
 // Another design is another pattern: look-alikes with unlike ceilings do not count as alike.
 Material tiled_ceiling(const Piece& piece) {
-  constexpr int kPlastered = 5;
   const Palette& palette = piece.palette();
-  const bool is_plastered = palette.ceiling_kind == kPlastered;
-  Material material = piece.running(is_plastered ? Finish::kPlaster : Finish::kCeiling,
+  const bool is_plastered = palette.ceiling_kind == kPlasteredCeiling;
+  Material material = piece.running(is_plastered ? Finish::kCeilingPlaster : Finish::kCeiling,
                                     palette.ceiling, paints::kWhite, kCeilingPlane);
   material.pattern_seed = scramble(material.pattern_seed + palette.ceiling_design);
   material.number = palette.ceiling_kind;
@@ -166,7 +165,7 @@ void Furnisher::add_ceiling(const Eigen::Vector2f& low_m, const Eigen::Vector2f&
       case CeilingFinish::kTiles:
         return tiled_ceiling(piece);
       case CeilingFinish::kPlaster:
-        return piece.running(Finish::kPlaster, colour, colour, kCeilingPlane);
+        return piece.running(Finish::kCeilingPlaster, colour, colour, kCeilingPlane);
       case CeilingFinish::kConcrete:
         return piece.running(Finish::kConcrete, 0.7F * colour, 0.5F * colour, kCeilingPlane);
     }

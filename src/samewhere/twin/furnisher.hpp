@@ -36,12 +36,11 @@ enum class Daylight { kBlinds, kView };
 enum class VentKind { kGrille, kSlot, kRound };
 
 // What a ceiling lamp is.
-enum class LampFace { kRibbed, kOpal, kLouvre, kTubes, kRound };
 struct LampFitting {
   LampFace face = LampFace::kRibbed;
   Eigen::Vector2f size_m{1.2F, 0.3F};
-  float drop_m = 0.0F;      // hangs this far below the ceiling
-  float brightness = 1.0F;  // over the usual
+  float drop_m = 0.0F;     // hangs this far below the ceiling
+  float usual_m2 = 0.36F;  // gives as much light as so much of a usual lamp
 };
 
 enum class Pictogram { kArrow, kStairs, kLift, kToilet, kExtinguisher };
@@ -88,6 +87,7 @@ class Furnisher {
   void add_extinguisher(const Place& place);
   void add_cabinet(const Place& place);  // 0.9 m wide, 0.32 m deep
   void add_switch(const Place& place);
+  void add_notice(const Place& place);     // a sheet of paper, taped to the wall
   void add_coat_rack(const Place& place);  // 1.0 m wide, 0.24 m deep, with coats and bags
   void add_leaflets(const Place& place);   // 0.72 m x 0.92 m, 0.05 m deep
   void add_low_shelf(const Place& place);  // 0.88 m wide, 0.3 m deep, small things on it

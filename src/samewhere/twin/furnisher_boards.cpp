@@ -131,6 +131,20 @@ void Furnisher::add_switch(const Place& place) {
   piece.end_object();
 }
 
+void Furnisher::add_notice(const Place& place) {
+  constexpr float kHair_m = 0.001F;
+  Piece piece = piece_at(place);
+  const float up_m = piece.draws().blend(1.35F, 1.6F);
+  const Material tape = piece.made_of(Finish::kPlastic, 0.9F * paints::kCork);
+  piece.add_paper(centred({0.0F, up_m}, {0.21F, 0.297F}, {0.0F, kHair_m}), 0.3);
+  piece.begin_object("tape");
+  for (const float side : {-1.0F, 1.0F}) {
+    piece.add_box(centred({0.08F * side, up_m + 0.148F}, {0.02F, 0.05F}, {kHair_m, 2.0F * kHair_m}),
+                  {tape, tape});
+  }
+  piece.end_object();
+}
+
 void Furnisher::add_sign(const Place& place, Pictogram pictogram) {
   Piece piece = piece_at(place);
   const Colour grounds[] = {paints::kBlue, paints::kGrey, 0.8F * paints::kGreen, paints::kBlack};

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <samewhere/twin/furnisher.hpp>
@@ -15,7 +16,8 @@ void Furnisher::add_ceiling_lamp(const Eigen::Vector2f& middle_m, const LampFitt
   constexpr float kThick_m = 0.03F;
   Piece piece = piece_below(middle_m, ceiling_m);
   Material light = piece.made_of(Finish::kLamp, paints::kLampWhite);
-  light.radiance = kLampRadiance * fitting.brightness * piece.light().lamps;
+  const float brightness = std::clamp(fitting.usual_m2 / fitting.size_m.prod(), 0.5F, 4.0F);
+  light.radiance = kLampRadiance * brightness * piece.light().lamps;
   light.number = static_cast<int>(fitting.face);
   const Material white = piece.made_of(Finish::kPaint, paints::kWhite);
   const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);

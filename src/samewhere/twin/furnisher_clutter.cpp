@@ -8,13 +8,14 @@
 namespace samewhere::twin {
 namespace {
 
-Colour vivid(Piece& piece) {
-  static const std::array<Colour, 9> dyes = {
-      colour_of_srgb(0.80F, 0.16F, 0.14F), colour_of_srgb(0.12F, 0.34F, 0.66F),
-      colour_of_srgb(0.92F, 0.72F, 0.12F), colour_of_srgb(0.10F, 0.46F, 0.26F),
-      colour_of_srgb(0.88F, 0.45F, 0.12F), colour_of_srgb(0.45F, 0.18F, 0.44F),
-      colour_of_srgb(0.10F, 0.10F, 0.12F), colour_of_srgb(0.93F, 0.92F, 0.88F),
-      colour_of_srgb(0.16F, 0.56F, 0.60F)};
+// Of print, cloth and moulded things: half of them muted.
+Colour dye(Piece& piece) {
+  static const std::array<Colour, 10> dyes = {
+      colour_of_srgb(0.72F, 0.20F, 0.17F), colour_of_srgb(0.18F, 0.35F, 0.58F),
+      colour_of_srgb(0.84F, 0.69F, 0.30F), colour_of_srgb(0.30F, 0.42F, 0.34F),
+      colour_of_srgb(0.66F, 0.50F, 0.34F), colour_of_srgb(0.38F, 0.30F, 0.38F),
+      colour_of_srgb(0.14F, 0.14F, 0.16F), colour_of_srgb(0.90F, 0.89F, 0.85F),
+      colour_of_srgb(0.32F, 0.48F, 0.50F), colour_of_srgb(0.56F, 0.55F, 0.53F)};
   return piece.draws().blend(dyes);
 }
 
@@ -25,7 +26,7 @@ void add_packet(Piece& piece, const Box& room) {
   box.high_m.y() = lerp(room.low_m.y() + 0.1F, room.high_m.y(), draws.blend(0.2F, 1.0F));
   box.low_m.z() = lerp(room.low_m.z(), room.high_m.z(), draws.blend(0.0F, 0.6F));
   box.high_m.z() = std::min(room.high_m.z(), box.low_m.z() + draws.blend(0.04F, 0.14F));
-  Material print = piece.made_of(Finish::kPaper, vivid(piece), vivid(piece));
+  Material print = piece.made_of(Finish::kPaper, dye(piece), dye(piece));
   print.gloss = 0.5F;
   piece.add_block(box, print);
 }
@@ -40,7 +41,7 @@ void add_pile(Piece& piece, const Box& room) {
     const float thick_m = draws.blend(0.015F, 0.045F);
     const float inset_m = 0.004F * static_cast<float>(i) + draws.blend(0.0F, 0.012F);
     const float back_m = draws.blend(0.0F, 0.3F) * (room.high_m.z() - room.low_m.z());
-    const Material cover = piece.made_of(Finish::kPlastic, vivid(piece));
+    const Material cover = piece.made_of(Finish::kPlastic, dye(piece));
     if (i >= num_books || y_m + thick_m > room.high_m.y()) continue;
     piece.add_block({{room.low_m.x() + inset_m, y_m, room.low_m.z() + back_m},
                      {room.high_m.x() - inset_m, y_m + thick_m, room.high_m.z() - inset_m}},
@@ -65,31 +66,43 @@ void add_vessel(Piece& piece, const Box& room) {
                   .half_m = Eigen::Vector2f::Constant(radius_m),
                   .num_sides = 10,
                   .has_lid = true},
-                 piece.made_of(Finish::kPlastic, vivid(piece)));
+                 piece.made_of(Finish::kPlastic, dye(piece)));
 }
 
-// A coat on its hook: narrow below the collar, wider from the shoulders on.
+// A coat on its hook: flat, wider from the collar to the shoulders and again towards the hem, its
+// sleeves hanging down in front.
 void add_coat(Piece& piece, float x_m, float hook_m) {
-  constexpr float kShoulder_m = 0.12F;
+  struct Section {
+    float from, to;  // shares of the length below the hook
+    float half_m;
+  };
+  constexpr std::array<Section, 5> kSections = {{{0.03F, 0.07F, 0.04F},
+                                                 {0.07F, 0.11F, 0.08F},
+                                                 {0.11F, 0.45F, 0.105F},
+                                                 {0.45F, 0.75F, 0.112F},
+                                                 {0.75F, 1.0F, 0.12F}}};
   Draws& draws = piece.draws();
-  const float long_m = draws.blend(0.55F, 0.95F);
-  const float radius_m = draws.blend(0.08F, 0.105F);
-  Material cloth = piece.made_of(Finish::kFabric, vivid(piece), vivid(piece));
-  cloth.number = draws.pick(3);
-  const Eigen::Vector3f hook(x_m, hook_m, 0.015F + radius_m);
-  const Eigen::Vector3f down = -Eigen::Vector3f::UnitY();
-  piece.add_bar({.from_m = hook + long_m * down,
-                 .to_m = hook + kShoulder_m * down,
-                 .radius_m = radius_m,
-                 .num_sides = 12,
-                 .has_ends = true},
-                cloth);
-  piece.add_bar({.from_m = hook + kShoulder_m * down,
-                 .to_m = hook + 0.03F * down,
-                 .radius_m = 0.055F,
-                 .num_sides = 10,
-                 .has_ends = true},
-                cloth);
+  const float long_m = draws.blend(0.75F, 1.1F);
+  const float deep_m = draws.blend(0.045F, 0.06F);
+  Material cloth = piece.made_of(Finish::kFabric, dye(piece), dye(piece));
+  cloth.number = std::max(0, draws.pick(6) - 3);  // most are plain
+  for (const Section& section : kSections) {
+    piece.add_post({.low_m = hook_m - section.to * long_m,
+                    .high_m = hook_m - section.from * long_m,
+                    .middle_m = {x_m, 0.015F + deep_m},
+                    .half_m = {section.half_m, deep_m * std::min(1.0F, section.half_m / 0.08F)},
+                    .num_sides = 12,
+                    .has_lid = true},
+                   cloth);
+  }
+  for (const float side : {-1.0F, 1.0F}) {
+    piece.add_bar({.from_m = {x_m + 0.088F * side, hook_m - 0.72F * long_m, 0.03F + 1.6F * deep_m},
+                   .to_m = {x_m + 0.080F * side, hook_m - 0.13F * long_m, 0.015F + 1.1F * deep_m},
+                   .radius_m = 0.034F,
+                   .num_sides = 10,
+                   .has_ends = true},
+                  cloth);
+  }
 }
 
 void add_bag(Piece& piece, float x_m, float hook_m) {
@@ -97,8 +110,8 @@ void add_bag(Piece& piece, float x_m, float hook_m) {
   const float top_m = hook_m - draws.blend(0.2F, 0.4F);
   const float high_m = draws.blend(0.26F, 0.4F);
   const float deep_m = draws.blend(0.1F, 0.16F);
-  const Colour dye = vivid(piece);
-  const Material cloth = piece.made_of(Finish::kFabric, dye, 0.7F * dye);
+  const Colour colour = dye(piece);
+  const Material cloth = piece.made_of(Finish::kFabric, colour, 0.7F * colour);
   piece.add_block({{x_m - 0.115F, top_m - high_m, 0.012F}, {x_m + 0.115F, top_m, deep_m}}, cloth);
   piece.add_block({{x_m - 0.085F, top_m - 0.8F * high_m, deep_m},
                    {x_m + 0.085F, top_m - 0.35F * high_m, deep_m + 0.035F}},
@@ -178,7 +191,7 @@ void Furnisher::add_leaflets(const Place& place) {
     const float y_m = 0.66F + 0.3F * static_cast<float>(row);
     const float out_m = draws.blend(0.016F, 0.04F);
     const float high_m = draws.blend(0.19F, 0.25F);
-    Material print = piece.made_of(Finish::kPaper, vivid(piece), vivid(piece));
+    Material print = piece.made_of(Finish::kPaper, dye(piece), dye(piece));
     print.gloss = 0.5F;
     piece.add_box({{x_m - 0.068F, y_m - 0.02F, 0.008F}, {x_m + 0.068F, y_m, 0.048F}},
                   {steel, steel});
@@ -227,8 +240,8 @@ void Furnisher::add_crates(const Place& place) {
     const float x_m = piece.draws().blend(-0.03F, 0.03F);
     const float out_m = piece.draws().blend(0.02F, 0.06F);
     const float y_m = kHigh_m * static_cast<float>(i);
-    const Material body = piece.made_of(Finish::kPlastic, vivid(piece));
-    const Material label = piece.made_of(Finish::kLabel, paints::kWhite, vivid(piece));
+    const Material body = piece.made_of(Finish::kPlastic, dye(piece));
+    const Material label = piece.made_of(Finish::kLabel, paints::kWhite, dye(piece));
     const Box box{{x_m - 0.2F, y_m, out_m}, {x_m + 0.2F, y_m + kHigh_m - 0.012F, out_m + 0.3F}};
     if (i < num_crates) {
       piece.add_block(box, body);

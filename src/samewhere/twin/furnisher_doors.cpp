@@ -12,12 +12,10 @@ const Colour kGlass = colour_of_srgb(0.20F, 0.25F, 0.28F);
 
 // Lever, with a lock plate or a rose, or an upright bar; the lever points to the hinges, which are
 // on the side of `to_hinges` (-1: left).
-void add_handle(Piece& piece, int kind, float to_hinges, const Material& steel) {
-  constexpr int kRose = 1;
-  constexpr int kBar = 2;
+void add_handle(Piece& piece, Handle kind, float to_hinges, const Material& steel) {
   const float x_m = -0.38F * to_hinges;
   const Material hole = piece.made_of(Finish::kPlastic, paints::kBlack);
-  if (kind == kBar) {
+  if (kind == Handle::kBar) {
     piece.add_bar({.from_m = {x_m, 0.75F, 0.055F},
                    .to_m = {x_m, 1.35F, 0.055F},
                    .radius_m = 0.013F,
@@ -29,9 +27,9 @@ void add_handle(Piece& piece, int kind, float to_hinges, const Material& steel) 
     }
     return;
   }
-  const Eigen::Vector2f plate_m =
-      kind == kRose ? Eigen::Vector2f(0.055F, 0.055F) : Eigen::Vector2f(0.045F, 0.21F);
-  const float plate_up_m = kind == kRose ? 1.06F : 1.02F;
+  const Eigen::Vector2f plate_m = kind == Handle::kLeverOnRose ? Eigen::Vector2f(0.055F, 0.055F)
+                                                               : Eigen::Vector2f(0.045F, 0.21F);
+  const float plate_up_m = kind == Handle::kLeverOnRose ? 1.06F : 1.02F;
   piece.add_box(centred({x_m, plate_up_m}, plate_m, {kLeaf_m, 0.022F}), {steel, steel});
   piece.add_box(centred({x_m, 1.06F}, {0.022F, 0.022F}, {0.022F, 0.055F}), {steel, steel});
   piece.add_bar({.from_m = {x_m - 0.012F * to_hinges, 1.06F, 0.062F},
@@ -44,12 +42,12 @@ void add_handle(Piece& piece, int kind, float to_hinges, const Material& steel) 
 }
 
 // A box with an arm at the top of a leaf, or none.
-void add_closer(Piece& piece, int kind, float to_hinges, const Material& steel) {
-  constexpr int kAtHinges = 1;
-  if (kind == 0) return;
-  const float x_m = kind == kAtHinges ? 0.25F * to_hinges : 0.0F;
+void add_closer(Piece& piece, Closer kind, float to_hinges, const Material& steel) {
+  const bool is_at_hinges = kind == Closer::kAtHinges;
+  if (kind == Closer::kNone) return;
+  const float x_m = is_at_hinges ? 0.25F * to_hinges : 0.0F;
   const Eigen::Vector2f size_m =
-      kind == kAtHinges ? Eigen::Vector2f(0.26F, 0.06F) : Eigen::Vector2f(0.48F, 0.035F);
+      is_at_hinges ? Eigen::Vector2f(0.26F, 0.06F) : Eigen::Vector2f(0.48F, 0.035F);
   piece.add_box(centred({x_m, 1.98F}, size_m, {kLeaf_m, 0.065F}), {steel, steel});
 }
 

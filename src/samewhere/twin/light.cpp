@@ -23,6 +23,13 @@ const Colour kShade = Colour::Constant(0.1F);
 
 bool is_buried(const Colour& colour) { return colour[0] < 0.0F; }
 
+// What a window sends into the room over what one sees of it: slats and cloth throw daylight onto
+// floor and ceiling rather than into eyes.
+float thrown_over_seen(Finish finish) {
+  constexpr float kWindow = 2.5F;
+  return finish == Finish::kBlinds || finish == Finish::kView ? kWindow : 1.0F;
+}
+
 std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
   constexpr float kPiece_m = 0.4F;
   std::vector<Emitter> emitters;
@@ -30,8 +37,8 @@ std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
     if (!is_emitting(r.material)) continue;
     const Eigen::Array2f num_pieces = (r.size_m.array() / kPiece_m).ceil();
     const Eigen::Vector2f piece_m = r.size_m.array() / num_pieces;
-    const Colour power =
-        mean_reflectance(r.material) * (r.material.radiance * piece_m.prod() / kPi);
+    const float radiance = thrown_over_seen(r.material.finish) * r.material.radiance;
+    const Colour power = mean_reflectance(r.material) * (radiance * piece_m.prod() / kPi);
     for (float v = 0.5F; v < num_pieces.y(); v += 1.0F) {
       for (float u = 0.5F; u < num_pieces.x(); u += 1.0F) {
         const Eigen::Vector3f position = r.at(Eigen::Vector2f(u, v).cwiseProduct(piece_m));

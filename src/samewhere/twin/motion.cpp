@@ -157,9 +157,11 @@ Motion::Angles Motion::angles_at(double stamp_s) const {
   const auto shaken = [&](const Waves& look, const Waves& shake) {
     return looking * sum_at(look, stamp_s) + moving * sum_at(shake, stamp_s);
   };
-  // one swing in nine metres, of the place, not of the time
-  constexpr double kSwing_rad_m = 0.7;
-  const Jet swing = sin(kSwing_rad_m * (carried[kDriveX] + carried[kDriveY]));
+  // one swing in nine metres, of the place, not of the time; who comes back looks at the same wall
+  constexpr double kSwingX_rad_m = 0.7;
+  constexpr double kSwingY_rad_m = 0.55;
+  const Jet way = cos(carried[kDriveHeading]) + sin(carried[kDriveHeading]);
+  const Jet swing = way * sin(kSwingX_rad_m * carried[kDriveX] + kSwingY_rad_m * carried[kDriveY]);
   return {
       carried[kDriveLook] + look_aside_rad_ * swing + shaken(shake_.look_yaw_rad, shake_.yaw_rad),
       Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +

@@ -242,9 +242,28 @@ TEST(Motion, WhoLooksAsideSeesTheSameThingsEachTimeAndWalksNoOtherWay) {
         std::remainder(yaw_of(pose) - yaw_of(ahead.world_from_body(t)), 2.0 * kPi);
     most_rad = std::max(most_rad, std::abs(aside_rad));
     const Eigen::Vector3d floor_m = aside.floor_position_m(t);
-    EXPECT_NEAR(aside_rad, 0.8 * std::sin(0.7 * (floor_m.x() + floor_m.y())), 1e-9) << t;
+    const double heading_rad = aside.heading_rad(t);
+    const double side = std::cos(heading_rad) + std::sin(heading_rad);
+    EXPECT_NEAR(aside_rad, 0.8 * side * std::sin(0.7 * floor_m.x() + 0.55 * floor_m.y()), 1e-9)
+        << t;
   }
   EXPECT_GT(most_rad, 0.7);
+}
+
+TEST(Motion, WhoLooksAsideSeesTheSameWallOnTheWayBack) {
+  Route route = route_along(Carrier::kRobot, {walk_to(12, 0), walk_to(0, 0)});
+  route.look_aside_rad = 0.8;
+  const Motion motion(route, 3);
+  int num_seen[2] = {0, 0};  // there, back
+  for (double t = 0.0; t < motion.duration_s(); t += 0.1) {
+    const double ahead = std::cos(motion.heading_rad(t));
+    const double swing = std::sin(0.7 * motion.floor_position_m(t).x());
+    if (std::abs(ahead) < 0.99 || std::abs(swing) < 0.5) continue;
+    ++num_seen[ahead > 0.0 ? 0 : 1];
+    EXPECT_GT(swing * std::sin(yaw_of(motion.world_from_body(t))), 0.1) << t;
+  }
+  EXPECT_GT(num_seen[0], 20);
+  EXPECT_GT(num_seen[1], 20);
 }
 
 TEST(Motion, AWalkerDriftsALittleAndARobotKeepsItsLine) {

@@ -27,7 +27,7 @@ class ToneCurve {
 
   float level(float light) const {
     // what is nearly black is made black; noise may take it below zero
-    constexpr float kBlack = 0.012F;
+    constexpr float kBlack = 0.005F;
     const float step = std::clamp((light - kBlack) / (1.0F - kBlack) * kStepsPerUnit, 0.0F,
                                   static_cast<float>(levels_.size() - 1));
     return levels_[static_cast<std::size_t>(step)];
@@ -41,7 +41,7 @@ class ToneCurve {
 
   // as cameras do: darker shades, lighter lights
   static float with_contrast(float level) {
-    constexpr float kStrength = 0.6F;
+    constexpr float kStrength = 0.35F;
     return lerp(level, smoothstep(level), kStrength);
   }
 
@@ -98,7 +98,7 @@ class SensorNoise {
 
 // Colours as cameras like them: further from grey.
 cv::Vec3f with_strong_colours(const cv::Vec3f& light) {
-  constexpr float kStrength = 1.25F;
+  constexpr float kStrength = 1.1F;
   const float grey = 0.11F * light[0] + 0.59F * light[1] + 0.30F * light[2];
   const cv::Vec3f neutral(grey, grey, grey);
   return neutral + kStrength * (light - neutral);

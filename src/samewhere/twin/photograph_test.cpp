@@ -50,7 +50,7 @@ TEST(Photograph, AShadowIsBlackAndAGreyWallIsNot) {
     const float radiance = signal / exposure.signal_per_radiance();
     return middle_levels(photograph(flat(radiance), exposure, 7)).mean;
   };
-  EXPECT_LT(level_of(0.012F), 3.0);
+  EXPECT_LT(level_of(0.005F), 3.0);
   EXPECT_GT(level_of(0.05F), 30.0);
 }
 

@@ -19,7 +19,7 @@ Stance world_from_unit(const core::Rigid3& world_from_unit, const Stance& stand)
 float usual_gloss(Finish finish) {
   switch (finish) {
     case Finish::kSteel:
-      return 2.0F;  // metals mirror more than any varnish
+      return 4.0F;  // metals mirror more than any varnish
     case Finish::kFloorTiles:
       return 0.8F;
     case Finish::kPlate:
@@ -32,6 +32,19 @@ float usual_gloss(Finish finish) {
       return 0.45F;
     default:
       return 0.0F;
+  }
+}
+
+// Half the angle over which it blurs what it mirrors.
+float usual_roughness_rad(Finish finish) {
+  switch (finish) {
+    case Finish::kSteel:
+      return 0.14F;  // brushed
+    case Finish::kFloorTiles:
+    case Finish::kPlanks:
+      return 0.05F;
+    default:
+      return 0.08F;
   }
 }
 
@@ -92,7 +105,8 @@ Material Piece::made_of(Finish finish, const Colour& colour, const Colour& secon
           .pattern_seed = draws_.common_seed(),
           .own_pattern_seed = draws_.own_seed(),
           .own_ratio = draws_.own_ratio(),
-          .gloss = usual_gloss(finish)};
+          .gloss = usual_gloss(finish),
+          .roughness_rad = usual_roughness_rad(finish)};
 }
 
 Material Piece::running(Finish finish, const Colour& colour, const Colour& second,
@@ -105,7 +119,8 @@ Material Piece::running(Finish finish, const Colour& colour, const Colour& secon
           .pattern_seed = scramble(palette.pattern_seed + plane),
           .own_pattern_seed = scramble(palette.own_pattern_seed + plane),
           .own_ratio = draws_.own_ratio(),
-          .gloss = usual_gloss(finish)};
+          .gloss = usual_gloss(finish),
+          .roughness_rad = usual_roughness_rad(finish)};
 }
 
 void Piece::begin_object(const std::string& name, bool is_unique) {
@@ -135,6 +150,7 @@ void Piece::add_paper(const Box& sheet, double min_own, Cover cover) {
   paper.pattern_seed = paper.own_pattern_seed = print;
   paper.own_ratio = 0.0F;
   paper.gloss = cover == Cover::kGlass ? 1.0F : 0.0F;
+  paper.roughness_rad = 0.0F;
   if (is_own || is_new) {
     begin_object(fmt::format("paper {:08x}", print), true);
   } else {

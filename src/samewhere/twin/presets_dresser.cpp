@@ -75,6 +75,7 @@ struct Dresser::Gap {
   float from_m = 0.0F;
   float to_m = 0.0F;
   float max_depth_m = 0.0F;
+  bool has_extinguishers = true;
 
   float width_m() const { return to_m - from_m; }
   float middle_m() const { return 0.5F * (from_m + to_m); }
@@ -96,7 +97,9 @@ enum class Filling {
   kCoatRack,
   kLeaflets,
   kLowShelf,
-  kCrates
+  kCrates,
+  kSign,
+  kNotice
 };
 
 struct FillingSize {
@@ -106,17 +109,19 @@ struct FillingSize {
 };
 
 // The more often in the list, the more often on the wall.
-constexpr std::array<FillingSize, 20> kFillings = {
+constexpr std::array<FillingSize, 23> kFillings = {
     {{Filling::kBoard, 1.18F, 0.03F},        {Filling::kPoster, 0.64F, 0.03F},
      {Filling::kSwitch, 0.10F, 0.02F},       {Filling::kCabinet, 0.92F, 0.36F},
      {Filling::kExtinguisher, 0.22F, 0.19F}, {Filling::kTwoPosters, 1.40F, 0.03F},
      {Filling::kBoard, 1.18F, 0.03F},        {Filling::kPoster, 0.64F, 0.03F},
-     {Filling::kRadiator, 1.20F, 0.13F},     {Filling::kBin, 0.40F, 0.40F},
+     {Filling::kRadiator, 1.36F, 0.13F},     {Filling::kBin, 0.40F, 0.40F},
      {Filling::kPlant, 0.60F, 0.60F},        {Filling::kChair, 0.60F, 0.60F},
      {Filling::kChair, 0.60F, 0.60F},        {Filling::kCoatRack, 1.00F, 0.25F},
      {Filling::kLeaflets, 0.74F, 0.05F},     {Filling::kLowShelf, 0.90F, 0.31F},
      {Filling::kCrates, 0.52F, 0.39F},       {Filling::kLeaflets, 0.74F, 0.05F},
-     {Filling::kCoatRack, 1.00F, 0.25F},     {Filling::kLowShelf, 0.90F, 0.31F}}};
+     {Filling::kCoatRack, 1.00F, 0.25F},     {Filling::kLowShelf, 0.90F, 0.31F},
+     {Filling::kSign, 0.22F, 0.02F},         {Filling::kNotice, 0.22F, 0.02F},
+     {Filling::kNotice, 0.22F, 0.02F}}};
 
 void add_filling(Furnisher& furnisher, Filling filling, const Place& place) {
   const auto spot = [&](float out_m) { return spot_before(place.wall, place.along_m, out_m); };
@@ -150,6 +155,10 @@ void add_filling(Furnisher& furnisher, Filling filling, const Place& place) {
       return furnisher.add_low_shelf(place);
     case Filling::kCrates:
       return furnisher.add_crates(place);
+    case Filling::kSign:
+      return furnisher.add_sign(place, Pictogram::kArrow);
+    case Filling::kNotice:
+      return furnisher.add_notice(place);
   }
 }
 
@@ -224,33 +233,99 @@ void Dresser::dress(int space, const Dress& dress) {
   for (const auto& piece : plan_.walls_of(space)) {
     if (piece.is_whole()) dress_wall(piece, dress);
   }
+  add_edges(space, dress);
   if (dress.has_lamps) add_ceiling_things(plan_.space(space));
 }
 
 void Dresser::dress_wall(const WallPiece& piece, const Dress& dress) {
   const Use use = dress.sides[static_cast<std::size_t>(piece.side)];
   if (use == Use::kNothing) return;
-  Gap gap{.wall = piece.wall, .from_m = 0.0F, .max_depth_m = dress.max_depth_m};
+  Gap gap{.wall = piece.wall,
+          .from_m = 0.0F,
+          .max_depth_m = dress.max_depth_m,
+          .has_extinguishers = dress.has_extinguishers};
   const bool has_bays = use == Use::kDoors || use == Use::kWindows;
   const auto doors_m =
       has_bays ? add_bays(use, dress.pitch_m, gap) : std::vector<Eigen::Vector2f>{};
   gap.to_m = piece.length_m();
   if (use != Use::kBare) fill_long_gap(gap);
   add_skirting(piece.wall, doors_m);
-  constexpr float kShortest_m = 1.5F;
-  if (piece.length_m() >= kShortest_m) add_edge(piece.wall, use, dress);
 }
 
-// Takes three things whatever there is.
-void Dresser::add_edge(const Wall& wall, Use use, const Dress& dress) {
+// Of whole walls and lintels in one plane, side by side.
+std::vector<Dresser::TopEdge> Dresser::top_edges(int space, int side) const {
+  const auto pieces = plan_.walls_of(space);
+  const auto has_end = [&](const Eigen::Vector2f& at_m) {
+    return std::any_of(pieces.begin(), pieces.end(), [&](const WallPiece& other) {
+      return other.side != side && other.high_m == other.wall.ceiling_m &&
+             (other.wall.from_m == at_m || other.wall.to_m == at_m);
+    });
+  };
+  std::vector<TopEdge> edges;
+  for (const auto& piece : pieces) {
+    if (piece.side != side || piece.high_m != piece.wall.ceiling_m) continue;
+    if (!edges.empty() && edges.back().wall.to_m == piece.wall.from_m) {
+      edges.back().wall.to_m = piece.wall.to_m;
+    } else {
+      edges.push_back({.wall = piece.wall});
+    }
+  }
+  for (auto& edge : edges) {
+    edge.starts_in_corner = has_end(edge.wall.from_m);
+    edge.ends_in_corner = has_end(edge.wall.to_m);
+  }
+  return edges;
+}
+
+// Whether a wall of another space of the unit leaves here across this one, away from who sees it.
+bool Dresser::is_convex_corner(int space, const Eigen::Vector2f& at_m, const Wall& wall) const {
+  const Eigen::Vector2f right = (wall.to_m - wall.from_m).normalized();
+  const Eigen::Vector2f back(-right.y(), right.x());
+  for (int i = 0; i < static_cast<int>(plan_.spaces().size()); ++i) {
+    const Space& other = plan_.space(i);
+    if (i == space || other.unit != unit_ || other.ceiling_m != wall.ceiling_m) continue;
+    for (const auto& piece : plan_.walls_of(i)) {
+      const bool starts_here = piece.wall.from_m == at_m;
+      if (!starts_here && piece.wall.to_m != at_m) continue;
+      const Eigen::Vector2f away = starts_here ? piece.wall.to_m : piece.wall.from_m;
+      if ((away - at_m).normalized().dot(back) > 0.9F) return true;
+    }
+  }
+  return false;
+}
+
+void Dresser::add_edges(int space, const Dress& dress) {
+  for (int side = 0; side < 4; ++side) {
+    const Use use = dress.sides[static_cast<std::size_t>(side)];
+    for (const auto& edge : top_edges(space, side)) add_edge(space, edge, use, dress);
+  }
+}
+
+// Cornices go around corners; ducts and pipes run from wall to wall or not at all. Takes three
+// things whatever there is.
+void Dresser::add_edge(int space, const TopEdge& edge, Use use, const Dress& dress) {
   const std::uint64_t end = furnisher_.num_things() + 3;
   const Eigen::Vector2f& cornice_m = edge_.cornice_m;
-  if (cornice_m.x() > 0.0F) furnisher_.add_cornice(wall, cornice_m.x(), cornice_m.y());
-  if (use == Use::kDoors && dress.has_ducts && edge_.duct_below_m > 0.0F) {
+  if (dress.has_cornices && cornice_m.x() > 0.0F) {
+    Wall wall = edge.wall;
+    constexpr float kHair_m = 0.003F;  // behind the front of the cornice around the corner
+    const Eigen::Vector2f beyond_m =
+        (cornice_m.x() - kHair_m) * (wall.to_m - wall.from_m).normalized();
+    const bool goes_on_left =
+        !edge.starts_in_corner && is_convex_corner(space, edge.wall.from_m, edge.wall);
+    const bool goes_on_right =
+        !edge.ends_in_corner && is_convex_corner(space, edge.wall.to_m, edge.wall);
+    if (goes_on_left) wall.from_m -= beyond_m;
+    if (goes_on_right) wall.to_m += beyond_m;
+    furnisher_.add_cornice(wall, cornice_m.x(), cornice_m.y());
+  }
+  const Wall& wall = edge.wall;
+  const bool is_closed = edge.starts_in_corner && edge.ends_in_corner;
+  if (is_closed && use == Use::kDoors && dress.has_ducts && edge_.duct_below_m > 0.0F) {
     furnisher_.add_cable_duct(wall, edge_.duct_below_m);
   }
   const float height_m = wall.ceiling_m - wall.floor_m - edge_.pipes_below_m;
-  if (use == Use::kPlain && dress.has_pipes) furnisher_.add_pipes(wall, height_m);
+  if (is_closed && use == Use::kPlain && dress.has_pipes) furnisher_.add_pipes(wall, height_m);
   while (furnisher_.num_things() < end) furnisher_.skip_thing();
 }
 
@@ -304,9 +379,32 @@ void Dresser::add_bay(const Place& place, Use use) {
   }
 }
 
+void Dresser::keep_free(const Place& middle, float width_m) {
+  kept_.push_back({.wall = middle.wall,
+                   .from_m = middle.along_m - 0.5F * width_m,
+                   .to_m = middle.along_m + 0.5F * width_m});
+}
+
+// The widest part that nobody keeps free.
+Dresser::Gap Dresser::without_kept(Gap gap) const {
+  for (const Stretch& kept : kept_) {
+    const bool is_same_wall = kept.wall.from_m == gap.wall.from_m &&
+                              kept.wall.to_m == gap.wall.to_m &&
+                              kept.wall.floor_m == gap.wall.floor_m;
+    if (!is_same_wall || kept.to_m <= gap.from_m || kept.from_m >= gap.to_m) continue;
+    if (kept.from_m - gap.from_m > gap.to_m - kept.to_m) {
+      gap.to_m = kept.from_m;
+    } else {
+      gap.from_m = kept.to_m;
+    }
+  }
+  return gap;
+}
+
 // Takes the same number of things whatever is chosen: look-alikes stay in step.
-void Dresser::fill_gap(const Gap& gap) {
+void Dresser::fill_gap(const Gap& whole_gap) {
   Draws draws(layout_, num_gaps_++);
+  const Gap gap = without_kept(whole_gap);
   std::vector<Filling> fitting;
   float widest_m = 0.0F;
   for (const auto& [filling, width_m, depth_m] : kFillings) {
@@ -318,8 +416,8 @@ void Dresser::fill_gap(const Gap& gap) {
     for (int i = 0; i < 2; ++i) furnisher_.skip_thing();
     return;
   }
-  const auto filling =
-      fitting[static_cast<std::size_t>(draws.pick(static_cast<int>(fitting.size())))];
+  auto filling = fitting[static_cast<std::size_t>(draws.pick(static_cast<int>(fitting.size())))];
+  if (filling == Filling::kExtinguisher && !gap.has_extinguishers) filling = Filling::kSign;
   const float slack_m = 0.5F * (gap.width_m() - widest_m) - kMargin_m;
   const Place place{gap.wall, gap.middle_m() + draws.shift(std::clamp(slack_m, 0.0F, 0.25F))};
   add_filling(furnisher_, filling, place);
@@ -392,8 +490,7 @@ Dresser::LampRow Dresser::add_lamps(const Space& space) {
   // about as much light whatever the design
   const float usual_m2 =
       0.36F * ceiling_.pitch_m / 2.4F * (course.width_m() > kWide_m ? 2.0F : 1.0F);
-  const float own_m2 = lamp.size_m.prod() * static_cast<float>(rows.size());
-  lamp.brightness = std::clamp(usual_m2 / own_m2, 0.5F, 4.0F);
+  lamp.usual_m2 = usual_m2 / static_cast<float>(rows.size());
   const LampRow row_of_lamps = lamps_along(course.length_m(), lamp_m.x());
   for (const float row : rows) {
     const float across_m = clear_of_ends(row * course.width_m(), lamp_m.y(), course.width_m());
@@ -519,8 +616,8 @@ void Dresser::furnish_lounge(int space, int sofa_side) {
   Spot chair = spot_before(back, middle_m + 1.1F + moved_m, 1.3F + 0.5F * moved_m);
   chair.heading_rad += is_later_visit_ ? -0.6F : -1.3F;
   furnisher_.add_chair(chair);
-  furnisher_.add_bin(spot_before(back, is_later_visit_ ? length_of(back) - 0.3F : 0.95F, 0.25F));
-  furnisher_.add_plant(spot_before(back, 0.4F, 0.45F));
+  furnisher_.add_bin(spot_before(back, is_later_visit_ ? length_of(back) - 0.3F : 0.86F, 0.25F));
+  furnisher_.add_plant(spot_before(back, 0.4F, 0.7F));
 }
 
 void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
@@ -547,7 +644,7 @@ void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
       {{{left_m, ends_m[0]}, {left_m, ends_m[1]}, back.floor_m, back.ceiling_m}, 0.65F});
   LampFitting lamp = ceiling_.lamp;
   lamp.drop_m = 0.0F;
-  lamp.brightness = std::min(0.36F / lamp.size_m.prod(), 4.0F);
+  lamp.usual_m2 = 0.36F;
   furnisher_.add_ceiling_lamp({0.5F * (left_m + right_m), head_m + 0.5F * kLanding_m}, lamp,
                               back.ceiling_m);
   // on the ceiling of a step in the middle of each flight, and no longer than that
@@ -555,7 +652,7 @@ void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
   const float rise_m = kStorey_m / 18.0F;
   lamp.size_m.x() = std::min(lamp.size_m.x(), 1.0F);
   lamp.size_m.y() = std::min(lamp.size_m.y(), 0.2F);
-  lamp.brightness = std::min(0.2F / lamp.size_m.prod(), 4.0F);
+  lamp.usual_m2 = 0.2F;
   furnisher_.add_ceiling_lamp({right_m - 0.5F * kFlightWidth_m, y_m}, lamp,
                               floor_m + 4.0F * rise_m + 2.7F);
   furnisher_.add_ceiling_lamp({left_m + 0.5F * kFlightWidth_m, y_m}, lamp,

@@ -44,6 +44,8 @@ struct Dress {
   bool has_ducts = true;     // along walls with doors
   bool has_pipes = false;    // along plain walls, below the ceiling
   bool has_lamps = true;
+  bool has_cornices = true;
+  bool has_extinguishers = true;  // a sign instead
 };
 
 // Puts what belongs into a corridor or room where there is room for it, in one unit. What hangs
@@ -54,6 +56,8 @@ class Dresser {
   // must outlive it.
   Dresser(Draft& draft, int unit);
 
+  // What is dressed from now on leaves this stretch of a wall to things that are put there by hand.
+  void keep_free(const Place& middle, float width_m);
   // Doors are numbered on from here.
   void number_from(int number) { next_number_ = number; }
   void dress(int space, const Dress& dress);
@@ -73,6 +77,11 @@ class Dresser {
 
  private:
   struct Gap;
+  struct Stretch {
+    Wall wall;
+    float from_m = 0.0F;
+    float to_m = 0.0F;
+  };
 
   // How all ceilings of the unit are fitted.
   struct CeilingDesign {
@@ -103,6 +112,12 @@ class Dresser {
     float duct_below_m = 0.17F;                           // the ceiling; 0: no duct
     float pipes_below_m = 0.34F;
   };
+  // A stretch of one side of a space that reaches the ceiling, over its openings.
+  struct TopEdge {
+    Wall wall;
+    bool starts_in_corner = false;  // with another wall of the space
+    bool ends_in_corner = false;
+  };
   static CeilingDesign ceiling_of(const Style& layout);
   static EdgeDesign edge_of(const Style& layout);
 
@@ -112,8 +127,12 @@ class Dresser {
   float shift_of_bay(bool is_door, int bay, int num_bays, float pitch_m);
   void fill_long_gap(Gap gap);
   void add_bay(const Place& place, Use use);
-  void fill_gap(const Gap& gap);
-  void add_edge(const Wall& wall, Use use, const Dress& dress);
+  void fill_gap(const Gap& whole_gap);
+  Gap without_kept(Gap gap) const;
+  std::vector<TopEdge> top_edges(int space, int side) const;
+  bool is_convex_corner(int space, const Eigen::Vector2f& at_m, const Wall& wall) const;
+  void add_edges(int space, const Dress& dress);
+  void add_edge(int space, const TopEdge& edge, Use use, const Dress& dress);
   void add_ceiling_things(const Space& space);
   LampRow add_lamps(const Space& space);
   LampRow lamps_along(float room_m, float lamp_m) const;
@@ -127,6 +146,7 @@ class Dresser {
   EdgeDesign edge_;
   bool is_later_visit_;
   Furnisher furnisher_;
+  std::vector<Stretch> kept_;
   std::uint64_t num_gaps_ = 0;
   std::uint64_t num_bays_ = 0;
   int next_number_ = 1;

@@ -54,22 +54,30 @@ int add_stair(Plan& plan, int floor) {
 void furnish_storey(Draft& draft, const Storey& storey, int floor) {
   Dresser dresser(draft, storey.unit);
   dresser.number_from(100 * (floor + 1) + 1);
+  const Place number{dresser.wall_of(storey.landing, 3), 0.6F};
+  const Place extinguisher{dresser.wall_of(storey.corridor, 1), 0.4F};
+  const Wall side = dresser.wall_of(storey.corridor, 3);
+  constexpr float kBeforeLastDoor_m = 10.68F;
+  constexpr float kCorner_m = 0.8F;
+  dresser.keep_free(number, 0.5F);
+  dresser.keep_free(extinguisher, 0.3F);
+  dresser.keep_free({side, kBeforeLastDoor_m}, 0.8F);
+  const Wall end = dresser.wall_of(storey.corridor, 0);
+  dresser.keep_free({end, 0.5F * kCorner_m}, kCorner_m);
   const auto doors = Use::kDoors;
   dresser.dress(storey.corridor,
                 {.sides = {Use::kWindows, doors, Use::kBare, doors}, .max_depth_m = 0.05F});
   dresser.dress(storey.landing, {.sides = {Use::kBare, Use::kNothing, Use::kBare, Use::kPlain},
                                  .max_depth_m = 0.05F});
   Furnisher& furnisher = dresser.furnisher();
-  furnisher.add_floor_number({dresser.wall_of(storey.landing, 3), 0.6F}, floor);
+  furnisher.add_floor_number(number, floor);
   const Wall lift = dresser.wall_of(storey.landing, 1);
   furnisher.add_lift_door({lift, 0.7F}, floor);
   dresser.add_skirting(lift, {{0.7F - kHalfLift_m, 0.7F + kHalfLift_m}});
   // what stands out stands where nobody walks
-  const Wall end = dresser.wall_of(storey.corridor, 0);
   furnisher.add_plant(spot_before(end, 0.45F, 0.45F));
-  const Wall side = dresser.wall_of(storey.corridor, 3);
-  furnisher.add_chair(spot_before(side, 11.7F, 0.35F));
-  furnisher.add_extinguisher({dresser.wall_of(storey.corridor, 1), 0.5F});
+  furnisher.add_chair(spot_before(side, kBeforeLastDoor_m, 0.35F));
+  furnisher.add_extinguisher(extinguisher);
 }
 
 Eigen::Vector3d on_floor(double x_m, double y_m, int floor) {

@@ -77,10 +77,11 @@ End add_end(Plan& plan, int floor, bool is_east) {
 
 void furnish_end(Draft& draft, const End& end, int floor) {
   Dresser dresser(draft, end.unit);
-  dresser.dress(end.space, {.sides = {Use::kWindows, Use::kPlain, Use::kWindows, Use::kPlain}});
   const Wall beside = dresser.wall_of(end.space, 1);
-  dresser.furnisher().add_floor_number({beside, beside.from_m.y() < kStairY_m ? 5.3F : 0.3F},
-                                       floor);
+  const Place number{beside, beside.from_m.y() < kStairY_m ? 5.3F : 0.3F};
+  dresser.keep_free(number, 0.5F);
+  dresser.dress(end.space, {.sides = {Use::kWindows, Use::kPlain, Use::kWindows, Use::kPlain}});
+  dresser.furnisher().add_floor_number(number, floor);
 }
 
 int add_stair(Plan& plan, int floor, bool is_east) {

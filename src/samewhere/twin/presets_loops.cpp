@@ -85,7 +85,7 @@ World office_loop(const Spec& spec) {
   dresser.furnish_lounge(outer_north, kNorth);
 
   World world{.visits = {std::move(draft.building)}};
-  world.route.look_aside_rad = 0.85;  // somebody who films what stands left and right
+  world.route.look_aside_rad = 0.5;  // somebody who films what stands left and right
   world.route.start_m = {-3.5, -4.0, 0.0};
   walk_around(world.route, {7.0, 4.0}, -3.5);
   walk(world.route, {{6.5, -4.0, 0.0}});
@@ -137,7 +137,7 @@ World second_visit(const Spec& spec) {
   Plan plan;
   const Ward ward = add_ward(plan);
   constexpr LightSetting kEvening{.lamps = 1.0F, .daylight = 0.1F};
-  constexpr LightSetting kDay{.lamps = 0.0F, .daylight = 3.0F};
+  constexpr LightSetting kDay{.lamps = 0.0F, .daylight = 1.2F};
   const bool begins_by_day = core::Random(core::seed_of(spec.seed, "twin.visit", 0)).index(2) == 1;
   World world;
   world.visits = {

@@ -93,7 +93,9 @@ World no_return(const Spec& spec) {
     Dresser dresser(draft, bay.unit);
     dresser.number_from(number);
     dresser.dress(bay.space, {.sides = {Use::kDoors, Use::kBare, Use::kDoors, Use::kBare},
-                              .pitch_m = kBay_m - kPortal_m});
+                              .pitch_m = kBay_m - kPortal_m,
+                              .has_cornices = false,  // portals end them
+                              .has_extinguishers = false});
     number += 2;
   }
   for (const Part& bend : way.bends) {

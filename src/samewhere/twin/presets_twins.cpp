@@ -97,12 +97,19 @@ Side add_side(Plan& plan, int num_quarter_turns) {
 void furnish_side(Draft& draft, const Side& side, int first_number) {
   Dresser dresser(draft, side.unit);
   dresser.number_from(first_number);
+  // the corners where a plant and a chair stand
+  constexpr float kCorner_m = 0.9F;
+  const Wall south = dresser.wall_of(side.wing, 0);
+  dresser.keep_free({south, (south.to_m - south.from_m).norm() - 0.5F * kCorner_m}, kCorner_m);
+  dresser.keep_free({dresser.wall_of(side.wing, 2), 0.5F * kCorner_m}, kCorner_m);
+  const Wall end = dresser.wall_of(side.wing, 1);
+  dresser.keep_free({end, 0.4F}, 0.8F);
+  dresser.keep_free({end, 1.75F}, 0.8F);
   dresser.dress(side.wing, {.sides = {Use::kDoors, Use::kWindows, Use::kDoors, Use::kPlain}});
   dresser.dress(side.lobby, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kNothing}});
   dresser.dress(side.hall, {.sides = {Use::kWindows, Use::kPlain, Use::kNothing, Use::kPlain}});
   Furnisher& furnisher = dresser.furnisher();
   // beyond where one turns back
-  const Wall end = dresser.wall_of(side.wing, 1);
   furnisher.add_plant(spot_before(end, 0.4F, 0.45F));
   furnisher.add_chair(spot_before(end, 1.75F, 0.5F));
   // two lifts face the hall, the stairs and the toilets are behind doors towards the lobby

@@ -113,14 +113,48 @@ Colour Renderer::without_texture(const Ray& ray, const Hit& hit) const {
   return mean_reflectance(r.material) * light;
 }
 
+// The mean of what rays around a mirrored one meet, lamps dimmed to `brightest`. A rough surface
+// seen aslant blurs less across the plane of sight and normal than along it. The same rays
+// everywhere: nothing sparkles.
+Colour Renderer::blurred(const Ray& axis, const Eigen::Vector3f& normal, float half_angle_rad,
+                         float brightest) const {
+  constexpr float kRaysPerRad = 110.0F;
+  constexpr std::size_t kMostRays = 16;
+  constexpr float kGoldenAngle_rad = 2.3999632F;
+  const auto num_rays =
+      std::min(kMostRays, 1 + static_cast<std::size_t>(kRaysPerRad * half_angle_rad));
+  const float cosine = normal.dot(axis.direction);
+  const Eigen::Vector3f across = axis.direction.cross(normal).stableNormalized();
+  const Eigen::Vector3f along = axis.direction.cross(across);
+  std::array<Eigen::Vector3f, kMostRays> directions;
+  for (std::size_t i = 0; i < num_rays; ++i) {
+    const float ratio = (static_cast<float>(i) + 0.5F) / static_cast<float>(num_rays);
+    const float out = num_rays == 1 ? 0.0F : half_angle_rad * std::sqrt(ratio);
+    const float turn_rad = kGoldenAngle_rad * static_cast<float>(i);
+    directions[i] = axis.direction + out * std::cos(turn_rad) * along +
+                    out * std::sin(turn_rad) * std::abs(cosine) * across;
+  }
+  std::array<Hit, kMostRays> hits;
+  rays_.first_hits(axis.origin, std::span(directions).first(num_rays),
+                   std::span(hits).first(num_rays));
+  Colour sum = Colour::Zero();
+  for (std::size_t i = 0; i < num_rays; ++i) {
+    if (hits[i].rectangle < 0) continue;
+    sum += without_texture({axis.origin, directions[i]}, hits[i]).min(brightest);
+  }
+  return sum / static_cast<float>(num_rays);
+}
+
 // What glass, varnish or polish mirrors where a ray meets it (Schlick, An Inexpensive BRDF Model
 // for Physically based Rendering, 1994). No surface is quite flat: its normal wavers.
 Colour Renderer::mirrored(const Ray& ray, const Hit& hit) const {
   constexpr float kStraightOn = 0.04F;  // of varnish and glass
   constexpr float kWave_m = 0.09F;
-  constexpr float kWaver = 0.02F;
+  constexpr float kWaver = 0.005F;
   constexpr float kOffSurface_m = 1e-3F;
-  constexpr float kBrightestMirrored = 5.0F;  // what is not quite smooth leaves of a lamp
+  // what is not quite smooth leaves of a lamp
+  constexpr float kBrightestInGlass = 4.0F;
+  constexpr float kBrightestElsewhere = 1.5F;
   const Rectangle& r = building_.rectangles[static_cast<std::size_t>(hit.rectangle)];
   const Eigen::Vector3f point = ray.origin + hit.reach * ray.direction;
   const Eigen::Vector2f wave = r.right_up_m(point) / kWave_m;
@@ -134,27 +168,28 @@ Colour Renderer::mirrored(const Ray& ray, const Hit& hit) const {
   const float share =
       kStraightOn + (1.0F - kStraightOn) * aslant * aslant * aslant * aslant * aslant;
   const Ray back{point + kOffSurface_m * r.normal(), direction - 2.0F * towards * normal};
-  const auto seen = rays_.first_hit(back);
-  if (!seen) return Colour::Zero();
+  const float roughness_rad = r.material.roughness_rad;
+  const float brightest = roughness_rad > 0.0F ? kBrightestElsewhere : kBrightestInGlass;
   return std::min(r.material.gloss * share, 1.0F) *
-         without_texture(back, *seen).min(kBrightestMirrored);
+         blurred(back, r.normal(), roughness_rad, brightest);
 }
 
 // Adds what the surface mirrors: it moves over the surface as the eye moves. Computed for some
 // pixels and interpolated between them.
 void Renderer::mirror_in_run(const Eye& eye, const Run& run, View& view) const {
-  constexpr std::size_t kStep = 4;
+  const Material& material = building_.rectangles[static_cast<std::size_t>(run.surface())].material;
+  const std::size_t step_px = material.roughness_rad > 0.0F ? 8 : 4;
   const auto mirrored_at = [&](std::size_t i) {
     return mirrored({eye.position, run.directions[i]}, run.hits[i]);
   };
   auto* const radiance = view.radiance.ptr<cv::Vec3f>(run.y) + run.first_x;
   const std::size_t last = run.hits.size() - 1;
   Colour here = mirrored_at(0);
-  for (std::size_t first = 0; first <= last; first += kStep) {
-    const std::size_t next = std::min(first + kStep, last);
+  for (std::size_t first = 0; first <= last; first += step_px) {
+    const std::size_t next = std::min(first + step_px, last);
     const Colour there = mirrored_at(next);
-    for (std::size_t i = first; i < first + kStep && i <= last; ++i) {
-      const float ratio = static_cast<float>(i - first) / static_cast<float>(kStep);
+    for (std::size_t i = first; i < first + step_px && i <= last; ++i) {
+      const float ratio = static_cast<float>(i - first) / static_cast<float>(step_px);
       const Colour between = here + ratio * (there - here);
       radiance[i] += cv::Vec3f(between[0], between[1], between[2]);
     }

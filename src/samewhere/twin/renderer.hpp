@@ -50,6 +50,8 @@ class Renderer {
   void render_row(const Eye& eye, MovingThings& moving, int y, View& view) const;
   void shade_run(const Eye& eye, MovingThings& moving, const Run& run, View& view) const;
   void mirror_in_run(const Eye& eye, const Run& run, View& view) const;
+  Colour blurred(const Ray& axis, const Eigen::Vector3f& normal, float half_angle_rad,
+                 float brightest) const;
   Colour mirrored(const Ray& ray, const Hit& hit) const;
   Colour without_texture(const Ray& ray, const Hit& hit) const;
   void darken_run(const Eye& eye, const MovingThings& moving, const Run& run, View& view) const;

@@ -162,6 +162,11 @@ TEST(Renderer, APolishedFloorMirrorsTheLampWhereTheEyeHasIt) {
   EXPECT_GT(lamp, 0.1F);
   EXPECT_GT(ceiling, 0.0F);
   EXPECT_LT(ceiling, 0.2F * lamp);
+  // what is rough spreads it
+  room.building.rectangles[TestRoom::kFloor].material.roughness_rad = 0.1F;
+  const float spread = middle_from(-2.5) - matt;
+  EXPECT_GT(spread, 0.05F * lamp);
+  EXPECT_LT(spread, 0.8F * lamp);
 }
 
 TEST(Renderer, TheMeterReadsTheMeanOfThePicture) {

@@ -40,8 +40,8 @@ struct Route {
   Carrier carrier = Carrier::kWalker;
   double speed_m_s = 1.3;
   double camera_height_m = 1.5;
-  // The camera looks left and right of the way by up to this much, by the place alone: at the same
-  // things wherever it passes again the same way.
+  // The camera looks left and right by up to this much (on ways along x or y): at the same things
+  // wherever it passes again, this way or the other.
   double look_aside_rad = 0.0;
 };
 

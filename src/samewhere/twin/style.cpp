@@ -37,9 +37,7 @@ namespace {
 // of the things that are counted from 0
 constexpr std::uint64_t kPalette = ~0ULL;
 
-constexpr int kNumCeilings = 6;
-constexpr int kNumDressings = 5;
-constexpr int kNumPitches = 4;  // of each
+constexpr int kNumCeilings = kNumCeilingTiles + 1;
 
 Colour rgb(float red, float green, float blue) { return colour_of_srgb(red, green, blue); }
 
@@ -89,24 +87,26 @@ void Palette::choose_fittings(Draws& draws) {
   ceiling_design = draws.design();
   ceiling_kind = Choices(ceiling_design).next(kNumCeilings);
   constexpr std::array kSkirtings_m = {0.09F, 0.06F, 0.12F, 0.16F};
-  skirting_m = Choices(draws.design()).of(kSkirtings_m);
+  skirting_m = Choices(draws.common_seed()).of(kSkirtings_m);  // one for all: units meet
 
   stair_design = draws.design();
 
   Choices doors(draws.design());
   constexpr std::array kFrames_m = {0.07F, 0.04F, 0.055F};
+  constexpr std::array kClosers = {Closer::kNone, Closer::kAtHinges, Closer::kAcross};
+  constexpr std::array kHandles = {Handle::kLeverOnPlate, Handle::kLeverOnRose, Handle::kBar};
   constexpr std::array kPlates_m = {1.55F, 1.40F, 1.72F};
   door.frame_m = doors.of(kFrames_m);
   door.is_mirrored = doors.next(2) == 1;
-  door.closer = doors.next(3);
-  door.handle = doors.next(3);
+  door.closer = doors.of(kClosers);
+  door.handle = doors.of(kHandles);
   door.plate_m = doors.of(kPlates_m);
 
   Choices windows(draws.design());
   const std::array<Eigen::Vector2f, 4> panes_m = {
       {{1.4F, 1.2F}, {1.2F, 1.3F}, {1.4F, 0.9F}, {1.05F, 1.1F}}};
   window.pane_m = windows.of(panes_m);
-  window.dressing = windows.next(kNumDressings * kNumPitches);
+  window.dressing = windows.next(kNumDressings * kNumSlatWidths);
   window.has_sill = windows.next(3) != 0;
   window.num_bars = windows.next(3);
 }

@@ -81,13 +81,16 @@ class Choices {
   std::uint32_t rest_;
 };
 
+enum class Closer : std::uint8_t { kNone, kAtHinges, kAcross };
+enum class Handle : std::uint8_t { kLeverOnPlate, kLeverOnRose, kBar };
+
 // How all doors of a unit are made.
 struct DoorDesign {
   float frame_m = 0.07F;     // width, at most 0.07
   bool is_mirrored = false;  // the handle on the left
-  int closer = 0;            // 0: none, 1: at the hinges, 2: across the middle
-  int handle = 0;            // 0: lever on a plate, 1: lever on a rose, 2: upright bar
-  float plate_m = 1.55F;     // height of the number
+  Closer closer = Closer::kNone;
+  Handle handle = Handle::kLeverOnPlate;
+  float plate_m = 1.55F;  // height of the number
 };
 
 // How all windows of a unit are made and dressed.

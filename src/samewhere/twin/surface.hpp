@@ -28,7 +28,7 @@ enum class Finish : std::uint8_t {
   kLamp,        // emits light
   kBlinds,      // a window with its blinds down, emits light
   kGrille,      // slots: vents, radiators
-  kPlaster,     // painted with a roller: walls, ceilings
+  kPlaster,     // walls painted with a roller
   kBrick,       // painted over
   kConcrete,    // cast between boards; floors too
   kFloorTiles,  // 30 cm
@@ -44,7 +44,21 @@ enum class Finish : std::uint8_t {
   kView,        // a window with what is outside, emits light
   kBooks,       // their backs side by side
   kBigNumber,   // `number` as high as the rectangle
+  kCeilingPlaster,
 };
+
+// Of Finish::kLamp, Material::number.
+enum class LampFace : std::uint8_t { kRibbed, kOpal, kLouvre, kTubes, kRound };
+
+// What hangs before a window: of Finish::kBlinds, Material::number, which counts on through
+// kNumSlatWidths for each.
+enum class Dressing : std::uint8_t { kBroad, kFine, kUpright, kCurtain, kShade, kCount };
+inline constexpr int kNumDressings = static_cast<int>(Dressing::kCount);
+inline constexpr int kNumSlatWidths = 4;
+
+// Of Finish::kCeiling, Material::number; one more is plastered.
+inline constexpr int kNumCeilingTiles = 5;
+inline constexpr int kPlasteredCeiling = kNumCeilingTiles;
 
 // What a surface is made of. Every finish reads the part that it needs.
 struct Material {
@@ -58,6 +72,7 @@ struct Material {
   int number = 0;               // of the room, the floor, the pictogram, the kind of cloth
   float radiance = 0.0F;        // of emitting finishes
   float gloss = 0.0F;           // share of what a polished surface would mirror; 0: matt
+  float roughness_rad = 0.0F;   // half the angle over which a glossy surface blurs what it mirrors
   std::uint32_t blot_seed = 0;  // a big stain or scratch in the middle; 0: none
 };
 

@@ -12,6 +12,8 @@ Colour running_finish(const Material& m, const TexturePoint& p) {
       return block_wall(m, p);
     case Finish::kPlaster:
       return plaster(m, p);
+    case Finish::kCeilingPlaster:
+      return ceiling_plaster(m, p);
     case Finish::kBrick:
       return brick_wall(m, p);
     case Finish::kConcrete:
