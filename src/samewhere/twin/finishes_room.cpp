@@ -145,7 +145,7 @@ Colour brick_wall(const Material& m, const TexturePoint& p) {
 Colour ceiling_plaster(const Material& m, const TexturePoint& p) {
   const Grain grain = grain_of(m);
   const float rough =
-      0.035F * octave_slope(p, {.wavelength_m = 0.03F, .count = 3, .gain = 1.4F}, grain + 20);
+      0.05F * octave_slope(p, {.wavelength_m = 0.03F, .count = 3, .gain = 1.4F}, grain + 20);
   const float patches =
       0.012F * octave_noise(p, {.wavelength_m = 0.5F, .count = 4, .gain = 0.7F}, grain + 30);
   return m.colour *

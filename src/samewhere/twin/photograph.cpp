@@ -41,7 +41,7 @@ class ToneCurve {
 
   // as cameras do: darker shades, lighter lights
   static float with_contrast(float level) {
-    constexpr float kStrength = 0.35F;
+    constexpr float kStrength = 0.45F;
     return lerp(level, smoothstep(level), kStrength);
   }
 

@@ -285,10 +285,9 @@ bool Dresser::is_convex_corner(int space, const Eigen::Vector2f& at_m, const Wal
     const Space& other = plan_.space(i);
     if (i == space || other.unit != unit_ || other.ceiling_m != wall.ceiling_m) continue;
     for (const auto& piece : plan_.walls_of(i)) {
-      const bool starts_here = piece.wall.from_m == at_m;
-      if (!starts_here && piece.wall.to_m != at_m) continue;
-      const Eigen::Vector2f away = starts_here ? piece.wall.to_m : piece.wall.from_m;
-      if ((away - at_m).normalized().dot(back) > 0.9F) return true;
+      const Eigen::Vector2f along = (piece.wall.to_m - piece.wall.from_m).normalized();
+      const Eigen::Vector2f& near_m = along.dot(back) > 0.0F ? piece.wall.from_m : piece.wall.to_m;
+      if (near_m == at_m && std::abs(along.dot(back)) > 0.9F) return true;
     }
   }
   return false;
