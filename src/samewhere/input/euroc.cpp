@@ -139,8 +139,9 @@ struct States {
 };
 
 // From those of the sensor that the truth belongs to. There is inertial truth where the first row
-// has all of its columns (a file may hold poses alone, or poses and velocities) and the sensor sits where the body is: the velocity of another point would tell the
-// body's only together with the turning.
+// has all of its columns (a file may hold poses alone, or poses and velocities) and the sensor sits
+// where the body is: the velocity of another point would tell the body's only together with the
+// turning.
 States read_states(const path& truth, const core::Rigid3& body_from_camera) {
   const core::Rigid3 body_from_sensor = is_there(truth / "sensor.yaml")
                                             ? read_euroc_body_from_sensor(truth / "sensor.yaml")

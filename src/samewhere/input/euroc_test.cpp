@@ -270,8 +270,9 @@ TEST_F(Euroc, BrokenSamplesAndPosesAreNamedWithTheirLine) {
   const std::string poses = "mav0/state_groundtruth_estimate0/data.csv";
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0\n"), HasSubstr("found 7 values"));
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,x\n"), HasSubstr("'x'"));
-  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0,0\n"
-                                    "11,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
+  EXPECT_THAT(complaint_with(poses,
+                             "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0,0\n"
+                             "11,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
               AllOf(HasSubstr("line 2"), HasSubstr("found 16 values")));
   EXPECT_THAT(complaint_with(poses, "10,1,2,3,2,0,0,0\n"),
               AllOf(HasSubstr("line 1"), HasSubstr("norm 2")));
