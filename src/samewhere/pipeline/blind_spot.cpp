@@ -96,7 +96,7 @@ int num_queues(int num_stored, const retrieve::Config& config) {
   return num_groups * (config.group_size / config.queue_size);
 }
 
-// A store, the queries, and which queue of it holds what each query should find.
+// A store, the queries that it holds something like, and in which queue.
 class BlindSpotMeter {
  public:
   BlindSpotMeter(const ViewPool& pool, const retrieve::Config& config)
@@ -107,40 +107,55 @@ class BlindSpotMeter {
       const auto& view = pool_.stored[static_cast<std::size_t>(store_.num_vectors())];
       store_.append(view.frame, view.unit);
     }
-    right_queues_.clear();
-    for (const auto& query : pool_.queries) right_queues_.push_back(right_queue(query));
+    asked_.clear();
+    for (const auto& query : pool_.queries) {
+      const int right = right_position(query);
+      if (core::dot(query.unit, store_.vector(right)) > config_.min_similarity)
+        asked_.push_back({&query, right / config_.queue_size});
+    }
+    if (!asked_.empty()) return;
+    throw core::InputError(
+        fmt::format("none of {} views resembles any of {} stored ones by more than "
+                    "retrieve.min_similarity = {}",
+                    pool_.queries.size(), num_stored, config_.min_similarity));
   }
+
+  int num_queries() const { return static_cast<int>(asked_.size()); }
 
   double share_missed(int num_draws) const {
     retrieve::Config config = config_;
     config.num_draws = num_draws;
     int num_missed = 0;
-    for (std::size_t i = 0; i < pool_.queries.size(); ++i) {
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
       for (std::uint64_t seed = 0; seed < kNumSeeds; ++seed) {
         core::Random random(core::seed_of(seed, "blind spot", i));
         const auto found = retrieve::sampled_search(
-            store_, {pool_.queries[i].unit, store_.num_vectors()}, config, random);
+            store_, {asked_[i].query->unit, store_.num_vectors()}, config, random);
         const bool is_found = std::any_of(found.begin(), found.end(), [&](const auto& view) {
-          return view.position / config.queue_size == right_queues_[i];
+          return view.position / config.queue_size == asked_[i].right_queue;
         });
         num_missed += is_found ? 0 : 1;
       }
     }
-    return num_missed / static_cast<double>(kNumSeeds * pool_.queries.size());
+    return num_missed / static_cast<double>(kNumSeeds * asked_.size());
   }
 
  private:
-  int right_queue(const core::Descriptor& query) const {
+  struct Asked {
+    const core::Descriptor* query;
+    int right_queue;
+  };
+
+  int right_position(const core::Descriptor& query) const {
     const auto scored =
         retrieve::exact_search(store_, {core::centred_unit(query.unit), store_.num_vectors()});
-    return std::min_element(scored.begin(), scored.end(), retrieve::is_better)->position /
-           config_.queue_size;
+    return std::min_element(scored.begin(), scored.end(), retrieve::is_better)->position;
   }
 
   const ViewPool& pool_;
   retrieve::Config config_;
   retrieve::SegmentedStore store_;
-  std::vector<int> right_queues_;  // of each query
+  std::vector<Asked> asked_;
 };
 
 std::vector<report::PlotPoint> formula_curve(int num_draws, const retrieve::Config& config) {
@@ -190,7 +205,7 @@ std::optional<std::vector<BlindSpotPoint>> measure_blind_spot(const ViewPool& po
     for (const int draws : num_draws) {
       points.push_back({sizes[i], draws,
                         evaluate::chance_of_missing(num_queues(sizes[i], config), draws),
-                        meter.share_missed(draws)});
+                        meter.num_queries(), meter.share_missed(draws)});
     }
     progress.update(static_cast<int>(i) + 1);
   }
@@ -236,10 +251,10 @@ std::string blind_spot_svg(const std::vector<BlindSpotPoint>& points,
 }
 
 std::string blind_spot_csv(const std::vector<BlindSpotPoint>& points) {
-  report::Table table{{"views", "draws", "chance_of_missing", "measured"}, {}};
+  report::Table table{{"views", "draws", "chance_of_missing", "queries", "measured"}, {}};
   for (const BlindSpotPoint& point : points) {
     table.rows.push_back({std::to_string(point.num_stored), std::to_string(point.num_draws),
-                          fmt::format("{:.4f}", point.expected),
+                          fmt::format("{:.4f}", point.expected), std::to_string(point.num_queries),
                           fmt::format("{:.4f}", point.measured)});
   }
   return report::as_csv(table);

@@ -28,12 +28,14 @@ struct BlindSpotPoint {
   int num_stored = 0;
   int num_draws = 0;
   double expected = 0.0;  // evaluate::chance_of_missing of a store with so many queues
-  double measured = 0.0;  // share of searches, over queries and 5 seeds
+  int num_queries = 0;    // that the store holds something like
+  double measured = 0.0;  // share of their searches, with 5 seeds each
 };
 
 // The share of sampled searches that find nothing in the queue which holds the view that the exact
-// search ranks first, for stores of 100, 200, 500, 1000 ... views of the pool. Nothing after
-// Ctrl-C.
+// search ranks first, for stores of 100, 200, 500, 1000 ... views of the pool. Only queries count
+// whose cosine with that view exceeds config.min_similarity: the others are missed however often
+// the queue is drawn. Nothing after Ctrl-C. Throws InputError if a store has none for any.
 std::optional<std::vector<BlindSpotPoint>> measure_blind_spot(const ViewPool& pool,
                                                               const retrieve::Config& config,
                                                               const std::vector<int>& num_draws);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/pipeline/blind_spot.hpp>
@@ -40,17 +41,21 @@ TEST(BlindSpot, IsAsLargeAsTheFormulaSays) {
   }
 }
 
-TEST(BlindSpot, WhatIsBelowTheThresholdIsMissedHoweverOftenItIsDrawn) {
+TEST(BlindSpot, WhatIsBelowTheThresholdIsNotAskedFor) {
   ViewPool pool = pool_of(100);
   for (std::size_t i = 0; i < 50; ++i)
     for (float& value : pool.queries[i].unit) value = 0.0F;  // a black view is like none
   const auto points = measure_blind_spot(pool, {}, {1000});
   ASSERT_TRUE(points.has_value());
-  EXPECT_EQ(points->front().measured, 0.5);
+  EXPECT_EQ(points->front().num_queries, 50);
+  EXPECT_EQ(points->front().measured, 0.0);
+  retrieve::Config config;
+  config.min_similarity = 1.5;
+  EXPECT_THROW(measure_blind_spot(pool, config, {1000}), core::InputError);
 }
 
 TEST(BlindSpot, IsDrawnAndSaidInOneSentence) {
-  const std::vector<BlindSpotPoint> points{{100, 50, 0.005, 0.01}, {1000, 50, 0.605, 0.612}};
+  const std::vector<BlindSpotPoint> points{{100, 50, 0.005, 9, 0.01}, {1000, 50, 0.605, 9, 0.612}};
   EXPECT_THAT(blind_spot_sentence(points, 50),
               HasSubstr("Among 1000 views, 50 draws miss the queue that holds the most similar one "
                         "with a chance of 60.5 % (measured: 61.2 %)"));
@@ -59,8 +64,8 @@ TEST(BlindSpot, IsDrawnAndSaidInOneSentence) {
   EXPECT_THAT(svg, HasSubstr("L = 50, measured"));
   EXPECT_THAT(svg, HasSubstr("Among 1000 views"));
   EXPECT_EQ(blind_spot_csv(points),
-            "views,draws,chance_of_missing,measured\n100,50,0.0050,0.0100\n"
-            "1000,50,0.6050,0.6120\n");
+            "views,draws,chance_of_missing,queries,measured\n100,50,0.0050,9,0.0100\n"
+            "1000,50,0.6050,9,0.6120\n");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ evaluate::MeanDeviation over_seeds(const Column& column, const FigureOf& figure)
   return evaluate::mean_and_deviation(values);
 }
 
-// A row of means, and one of standard deviations under it.
+// A row of means, and one of standard deviations under it, which a single run has not.
 void add_figure(report::Table& table, const std::vector<Column>& columns, const std::string& name,
                 const FigureOf& figure, int num_digits = 4) {
   Row means{name};
@@ -57,7 +57,7 @@ void add_figure(report::Table& table, const std::vector<Column>& columns, const 
   for (const Column& column : columns) {
     const auto [mean, deviation] = over_seeds(column, figure);
     means.push_back(fmt::format("{:.{}f}", mean, num_digits));
-    deviations.push_back(fmt::format("{:.{}f}", deviation, num_digits));
+    deviations.push_back(column.size() > 1 ? fmt::format("{:.{}f}", deviation, num_digits) : "");
   }
   table.rows.push_back(means);
   table.rows.push_back(deviations);
@@ -94,7 +94,7 @@ std::string table_2(const std::vector<Column>& columns) {
     table.rows.push_back(
         published_row(columns, fmt::format("published AUC, {}", published.name), published.auc, 4));
   }
-  return report::as_text(table);
+  return report::as_text(table) + "a recall that a search does not reach counts as precision 0\n";
 }
 
 // The durations of one step over the frames of all seeds, ms.
@@ -268,8 +268,8 @@ std::string curves_svg(const PaperBlock& block) {
   constexpr const char* kExactColour = "#c0552d";
   report::Plot plot{.title = fmt::format("{}, {}", block.recording, block.describer),
                     .note =
-                        "Precision and recall by the number of draws L, first seed; the exact "
-                        "search is what sampling can reach.",
+                        "By the number of draws L, first seed; the exact search compares every "
+                        "vector and knows no threshold.",
                     .x = {"recall", 0.0, 1.0, false},
                     .y = {"precision", 0.0, 1.0, false},
                     .curves = {}};

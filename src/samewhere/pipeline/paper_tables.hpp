@@ -25,7 +25,8 @@ std::string searches_csv(const std::vector<PaperBlock>& blocks);
 std::string times_csv(const std::vector<PaperBlock>& blocks);
 // The precision-recall curves of one block, for the first seed and the exact search, as SVG.
 std::string curves_svg(const PaperBlock& block);
-// A file name for it: the recording, the window and the describer, with letters, digits and -_. only.
+// A file name for it: the recording, the window and the describer, with letters, digits and -_.
+// only.
 std::string curves_file_name(const PaperBlock& block);
 
 }  // namespace samewhere::pipeline

@@ -17,6 +17,8 @@ constexpr double kHeight_px = 400.0;  //
 constexpr double kLegend_px = 210.0;
 constexpr double kLegendStep_px = 22.0;
 constexpr int kNumSteps = 5;  // of a linear axis
+// attributes rather than a style sheet, which simple viewers do not read
+constexpr const char* kLineLook = R"(fill="none" stroke-width="2.2" stroke-linejoin="round")";
 
 // 0 at the low end of the axis, 1 at the high end.
 double share_of(const PlotAxis& axis, double value) {
@@ -59,23 +61,23 @@ std::string axes(const Plot& plot) {
   const double bottom_px = kTop_px + kHeight_px;
   for (const double x : ticks(plot.x)) {
     fmt::format_to(out,
-                   "<line class=\"grid\" x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2}\"/>"
+                   "<line stroke=\"#e5e2dc\" x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2}\"/>"
                    "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
                    x_px(plot, x), kTop_px, bottom_px, bottom_px + 20.0, x);
   }
   for (const double y : ticks(plot.y)) {
     fmt::format_to(out,
-                   "<line class=\"grid\" x1=\"{0}\" y1=\"{1:.1f}\" x2=\"{2}\" y2=\"{1:.1f}\"/>"
+                   "<line stroke=\"#e5e2dc\" x1=\"{0}\" y1=\"{1:.1f}\" x2=\"{2}\" y2=\"{1:.1f}\"/>"
                    "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
                    kLeft_px, y_px(plot, y), kLeft_px + kWidth_px, kLeft_px - 8.0,
                    y_px(plot, y) + 5.0, y);
   }
-  fmt::format_to(
-      out,
-      "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
-      "<text transform=\"translate(22 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-      kLeft_px + kWidth_px / 2.0, bottom_px + 44.0, escaped(plot.x.name),
-      kTop_px + kHeight_px / 2.0, escaped(plot.y.name));
+  fmt::format_to(out,
+                 "<text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{2}</text>\n"
+                 "<text x=\"22\" y=\"{3}\" transform=\"rotate(-90 22 {3})\" "
+                 "text-anchor=\"middle\">{4}</text>\n",
+                 kLeft_px + kWidth_px / 2.0, bottom_px + 44.0, escaped(plot.x.name),
+                 kTop_px + kHeight_px / 2.0, escaped(plot.y.name));
   return svg;
 }
 
@@ -91,7 +93,8 @@ std::string drawn(const Plot& plot, const PlotCurve& curve) {
   }
   if (curve.style == PlotStyle::kMarks)
     return fmt::format("<g fill=\"{}\">{}</g>\n", escaped(curve.colour), svg);
-  return fmt::format("<polyline stroke=\"{}\" points=\"{}\"/>\n", escaped(curve.colour), svg);
+  return fmt::format("<polyline {} stroke=\"{}\" points=\"{}\"/>\n", kLineLook,
+                     escaped(curve.colour), svg);
 }
 
 std::string legend(const std::vector<PlotCurve>& curves) {
@@ -104,8 +107,8 @@ std::string legend(const std::vector<PlotCurve>& curves) {
         curve.style == PlotStyle::kMarks
             ? fmt::format("<circle fill=\"{}\" cx=\"{}\" cy=\"{}\" r=\"4.5\"/>",
                           escaped(curve.colour), x + 11.0, y)
-            : fmt::format("<polyline stroke=\"{}\" points=\"{},{} {},{}\"/>", escaped(curve.colour),
-                          x, y, x + 22.0, y);
+            : fmt::format("<polyline {} stroke=\"{}\" points=\"{},{} {},{}\"/>", kLineLook,
+                          escaped(curve.colour), x, y, x + 22.0, y);
     fmt::format_to(std::back_inserter(svg), "{}<text x=\"{}\" y=\"{}\">{}</text>\n", sign, x + 30.0,
                    y + 5.0, escaped(curve.name));
     y += kLegendStep_px;
@@ -122,16 +125,14 @@ std::string plot_svg(const Plot& plot) {
   const double height_px = kTop_px + kHeight_px + 96.0;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\">\n<style>text {{ font: 14px system-ui, sans-serif; fill: #4a5056; }} "
-      ".title {{ font-size: 18px; font-weight: 600; fill: #22262a; }} polyline {{ fill: none; "
-      "stroke-width: 2.2; stroke-linejoin: round; }} .grid {{ stroke: #e5e2dc; }}</style>\n"
-      "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n"
-      "<text class=\"title\" x=\"{2}\" y=\"32\">{3}</text>\n",
+      "height=\"{1}\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n"
+      "<g font-family=\"system-ui, sans-serif\" font-size=\"14\" fill=\"#4a5056\">\n"
+      "<text x=\"{2}\" y=\"32\" font-size=\"18\" font-weight=\"600\">{3}</text>\n",
       width_px, height_px, kLeft_px, escaped(plot.title));
   svg += axes(plot);
   for (const PlotCurve& curve : plot.curves) svg += drawn(plot, curve);
   svg += legend(plot.curves);
-  return svg + fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n</svg>\n", kLeft_px,
+  return svg + fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n</g>\n</svg>\n", kLeft_px,
                            height_px - 18.0, escaped(plot.note));
 }
 
