@@ -218,7 +218,7 @@ std::string blind_spot_sentence(const std::vector<BlindSpotPoint>& points, int n
   });
   core::require(last != points.rend(), "the number of draws was measured");
   return fmt::format(
-      "Among {} views, {} draws miss the queue that holds the most similar one with a chance of "
+      "Among {} views, {} draws miss the queue of the most similar one with a chance of "
       "{:.1f} % (measured: {:.1f} %).",
       last->num_stored, num_draws, 100.0 * last->expected, 100.0 * last->measured);
 }

@@ -57,7 +57,7 @@ TEST(BlindSpot, WhatIsBelowTheThresholdIsNotAskedFor) {
 TEST(BlindSpot, IsDrawnAndSaidInOneSentence) {
   const std::vector<BlindSpotPoint> points{{100, 50, 0.005, 9, 0.01}, {1000, 50, 0.605, 9, 0.612}};
   EXPECT_THAT(blind_spot_sentence(points, 50),
-              HasSubstr("Among 1000 views, 50 draws miss the queue that holds the most similar one "
+              HasSubstr("Among 1000 views, 50 draws miss the queue of the most similar one "
                         "with a chance of 60.5 % (measured: 61.2 %)"));
   const std::string svg = blind_spot_svg(points, {});
   EXPECT_THAT(svg, HasSubstr("L = 50, formula"));

@@ -11,10 +11,10 @@ namespace samewhere::report {
 namespace {
 
 constexpr double kLeft_px = 70.0;
-constexpr double kTop_px = 54.0;
+constexpr double kTop_px = 80.0;
 constexpr double kWidth_px = 560.0;   // of the plot itself
 constexpr double kHeight_px = 400.0;  //
-constexpr double kLegend_px = 210.0;
+constexpr double kLegend_px = 240.0;
 constexpr double kLegendStep_px = 22.0;
 constexpr int kNumSteps = 5;  // of a linear axis
 // attributes rather than a style sheet, which simple viewers do not read
@@ -73,11 +73,10 @@ std::string axes(const Plot& plot) {
                    y_px(plot, y) + 5.0, y);
   }
   fmt::format_to(out,
-                 "<text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{2}</text>\n"
-                 "<text x=\"22\" y=\"{3}\" transform=\"rotate(-90 22 {3})\" "
-                 "text-anchor=\"middle\">{4}</text>\n",
-                 kLeft_px + kWidth_px / 2.0, bottom_px + 44.0, escaped(plot.x.name),
-                 kTop_px + kHeight_px / 2.0, escaped(plot.y.name));
+                 "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
+                 "<text x=\"{}\" y=\"{}\">{}</text>\n",
+                 kLeft_px + kWidth_px / 2.0, bottom_px + 44.0, escaped(plot.x.name), kLeft_px,
+                 kTop_px - 14.0, escaped(plot.y.name));
   return svg;
 }
 

@@ -46,9 +46,9 @@ TEST(Plot, IsWellFormedWhateverItsWordsAre) {
 
 TEST(Plot, PointsAreWhereTheAxesSay) {
   const std::string svg = plot_svg(sample());
-  // the corners and the middle of a plot of 560 x 400 pixels at (70, 54)
-  EXPECT_NE(svg.find("points=\"70.0,454.0 350.0,254.0 630.0,54.0 \""), std::string::npos) << svg;
-  EXPECT_NE(svg.find("<circle cx=\"350.0\" cy=\"354.0\""), std::string::npos) << svg;
+  // the corners and the middle of a plot of 560 x 400 pixels at (70, 80)
+  EXPECT_NE(svg.find("points=\"70.0,480.0 350.0,280.0 630.0,80.0 \""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("<circle cx=\"350.0\" cy=\"380.0\""), std::string::npos) << svg;
   // powers of ten on one axis, fifths on the other
   for (const char* label : {">100<", ">1000<", ">10000<", ">0.2<", ">0.8<"})
     EXPECT_NE(svg.find(label), std::string::npos) << label;
