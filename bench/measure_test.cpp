@@ -5,7 +5,6 @@
 #include "impostor_rule.hpp"
 #include "orb_matches.hpp"
 #include "picture_statistics.hpp"
-#include "table.hpp"
 #include "view_pairs.hpp"
 #include "whole_view.hpp"
 #include <samewhere/core/errors.hpp>
@@ -25,12 +24,6 @@ cv::Mat grey_noise(cv::Size size_px, double mean, double deviation, std::uint64_
     }
   }
   return image;
-}
-
-TEST(Table, ColumnsLineUpAndCommasAreQuoted) {
-  const Table table{.header = {"name", "n"}, .rows = {{"a, b", "12"}, {"c", "3"}}};
-  EXPECT_EQ(as_text(table), "name   n\na, b  12\nc      3\n");
-  EXPECT_EQ(as_csv(table), "name,n\n\"a, b\",12\nc,3\n");
 }
 
 TEST(PictureStatistics, NoiseIsFoundBesideAnEdge) {

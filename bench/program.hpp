@@ -5,9 +5,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "table.hpp"
+#include <samewhere/report/table.hpp>
 
 namespace samewhere::bench {
+
+using report::Table;
 
 // Names the program, says what it is for, adds its options; returns the work that is done once they
 // are read.

@@ -1,6 +1,7 @@
 // search SOURCE...: what does finding a view among many stored ones cost, step by step?
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -174,33 +175,29 @@ void measure(Options& options) {
   publish(table, options.csv_file);
 }
 
-int run(int argc, char** argv) {
-  Options options;
-  CLI::App app(
+std::function<void()> set_up(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.name("search");
+  app.description(
       "What finding a view among many costs, by step, on one core. The stored views are the "
       "sources'\n"
-      "images and, when these are used up, random crops of them; the queries are other crops.",
-      "search");
-  app.add_option("SOURCE", options.sources, "recordings and twin: buildings")->required();
-  app.add_option("--sizes", options.sizes, "of the store, views")
+      "images and, when these are used up, random crops of them; the queries are other crops.");
+  app.add_option("SOURCE", options->sources, "recordings and twin: buildings")->required();
+  app.add_option("--sizes", options->sizes, "of the store, views")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--queries", options.num_queries, "in a store of each size")
+  app.add_option("--queries", options->num_queries, "in a store of each size")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--set", options.assignments, "one setting, e.g. retrieve.num_draws=70")
+  app.add_option("--set", options->assignments, "one setting, e.g. retrieve.num_draws=70")
       ->allow_extra_args(false);
-  app.add_option("--csv", options.csv_file, "write the table to this file, too");
-  return run_program(app, argc, argv, [&options] { measure(options); });
+  app.add_option("--csv", options->csv_file, "write the table to this file, too");
+  return [options] { measure(*options); };
 }
 
 }  // namespace
 }  // namespace samewhere::bench
 
 int main(int argc, char** argv) {
-  try {
-    return samewhere::bench::run(argc, argv);
-  } catch (...) {
-    return samewhere::bench::kBrokenPromise;  // not even the options could be set up
-  }
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
 }

@@ -16,6 +16,7 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_loops_command(CLI::App& app, int& exit_code);
 void add_twin_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
+void add_bench_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app);
 void add_train_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);

@@ -18,7 +18,7 @@ class Commands : public testing::Test {
 
 TEST_F(Commands, HelpShowsAnExampleOfEach) {
   EXPECT_EQ(run("--help").exit_code, 0);
-  for (const std::string command : {"run", "loops", "eval", "twin", "config", "doctor"}) {
+  for (const std::string command : {"run", "loops", "eval", "bench", "twin", "config", "doctor"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << command;

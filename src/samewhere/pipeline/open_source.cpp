@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -26,6 +28,16 @@ void require_slam_input(const core::SourceInfo& info, const Config& config) {
     throw core::InputError(fmt::format("{}: no depth images, which `samewhere run` needs today {}",
                                        config.source, kOtherwise));
   }
+}
+
+Config with_window_in_frames(Config config, const core::SourceInfo& info) {
+  constexpr double kLongest_frames = 1e9;
+  auto& retrieve = config.retrieve;
+  if (retrieve.window_frames < 0) {
+    retrieve.window_frames = static_cast<int>(
+        std::lround(std::min(retrieve.window_s * info.frame_rate_hz, kLongest_frames)));
+  }
+  return config;
 }
 
 std::string absolute_source(const std::string& source) {

@@ -14,6 +14,9 @@ std::unique_ptr<core::Source> open_source(const Config& config);
 // Throws InputError if the source lacks the depth or the camera that SLAM needs.
 void require_slam_input(const core::SourceInfo& info, const Config& config);
 
+// The config with retrieve.window_frames: given in it, or window_s at the source's frame rate.
+Config with_window_in_frames(Config config, const core::SourceInfo& info);
+
 // `source` such that it means the same from any folder: an absolute path; a twin's name stays as it
 // is.
 std::string absolute_source(const std::string& source);

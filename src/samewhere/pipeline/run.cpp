@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -20,17 +18,6 @@ namespace samewhere::pipeline {
 namespace {
 
 constexpr int kThumbnailWidth_px = 160;
-constexpr double kLongestWindow_frames = 1e9;
-
-// The window in frames, if it was given in seconds.
-Config resolved(Config config, const core::SourceInfo& info) {
-  auto& retrieve = config.retrieve;
-  if (retrieve.window_frames < 0) {
-    retrieve.window_frames = static_cast<int>(
-        std::lround(std::min(retrieve.window_s * info.frame_rate_hz, kLongestWindow_frames)));
-  }
-  return config;
-}
 
 RunOutcome start_outcome(const Config& config, const core::SourceInfo& info) {
   RunOutcome outcome;
@@ -111,7 +98,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   const auto source = input::prefetched(std::move(unbuffered));
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
-  const Config config = resolved(given, source->info());
+  const Config config = with_window_in_frames(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
   Slam slam(config);
   std::vector<std::string> names;
@@ -146,7 +133,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
 RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given) {
   const auto source = input::prefetched(std::move(unbuffered));
   const core::Truth truth = source->truth();
-  const Config config = resolved(given, source->info());
+  const Config config = with_window_in_frames(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
   Recognition recognition(config);
   FrameFeed feed(*source, outcome);

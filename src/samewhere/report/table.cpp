@@ -1,12 +1,11 @@
-#include "table.hpp"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/csv.hpp>
+#include <samewhere/report/table.hpp>
 
-namespace samewhere::bench {
+namespace samewhere::report {
 namespace {
 
 using Row = std::vector<std::string>;
@@ -51,4 +50,4 @@ std::string as_csv(const Table& table) {
   return text;
 }
 
-}  // namespace samewhere::bench
+}  // namespace samewhere::report

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace samewhere::bench {
+namespace samewhere::report {
 
 // Figures in rows; every row has as many cells as the header.
 struct Table {
@@ -17,4 +17,4 @@ std::string as_text(const Table& table);
 // Comma-separated, with quotes where a cell holds a comma or a quote (RFC 4180).
 std::string as_csv(const Table& table);
 
-}  // namespace samewhere::bench
+}  // namespace samewhere::report

@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/random.hpp>
+#include <samewhere/core/similarity.hpp>
+#include <samewhere/pipeline/blind_spot.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::uint64_t kSeed = 7;
+
+// Views that all differ; the queries are views of the first hundred seen again.
+ViewPool pool_of(int num_stored) {
+  core::Random random(kSeed);
+  ViewPool pool;
+  for (int i = 0; i < num_stored; ++i) {
+    std::vector<float> vector(32);
+    for (float& value : vector) value = static_cast<float>(random.gaussian());
+    pool.stored.push_back({core::FrameId(static_cast<std::uint64_t>(i)), core::unit(vector), 1});
+  }
+  for (std::size_t i = 0; i < 100; ++i) pool.queries.push_back(pool.stored[i]);
+  return pool;
+}
+
+TEST(BlindSpot, IsAsLargeAsTheFormulaSays) {
+  const auto points = measure_blind_spot(pool_of(1000), {}, {10, 50});
+  ASSERT_TRUE(points.has_value());
+  ASSERT_EQ(points->size(), 8u);  // stores of 100, 200, 500 and 1000 views
+  for (const BlindSpotPoint& point : *points) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", " << point.num_stored << " views, "
+                                    << point.num_draws << " draws");
+    EXPECT_NEAR(point.expected, std::pow(1.0 - 10.0 / point.num_stored, point.num_draws), 1e-12);
+    const double four_sigma = 4.0 * std::sqrt(point.expected * (1.0 - point.expected) / 500.0);
+    EXPECT_NEAR(point.measured, point.expected, four_sigma);
+  }
+}
+
+TEST(BlindSpot, WhatIsBelowTheThresholdIsNotAskedFor) {
+  ViewPool pool = pool_of(100);
+  for (std::size_t i = 0; i < 50; ++i)
+    for (float& value : pool.queries[i].unit) value = 0.0F;  // a black view is like none
+  const auto points = measure_blind_spot(pool, {}, {1000});
+  ASSERT_TRUE(points.has_value());
+  EXPECT_EQ(points->front().num_queries, 50);
+  EXPECT_EQ(points->front().measured, 0.0);
+  retrieve::Config config;
+  config.min_similarity = 1.5;
+  EXPECT_THROW(measure_blind_spot(pool, config, {1000}), core::InputError);
+}
+
+TEST(BlindSpot, IsDrawnAndSaidInOneSentence) {
+  const std::vector<BlindSpotPoint> points{{100, 50, 0.005, 9, 0.01}, {1000, 50, 0.605, 9, 0.612}};
+  EXPECT_THAT(blind_spot_sentence(points, 50),
+              HasSubstr("Among 1000 views, 50 draws miss the queue of the most similar one "
+                        "with a chance of 60.5 % (measured: 61.2 %)"));
+  const std::string svg = blind_spot_svg(points, {});
+  EXPECT_THAT(svg, HasSubstr("L = 50, formula"));
+  EXPECT_THAT(svg, HasSubstr("L = 50, measured"));
+  EXPECT_THAT(svg, HasSubstr("Among 1000 views"));
+  EXPECT_EQ(blind_spot_csv(points),
+            "views,draws,chance_of_missing,queries,measured\n100,50,0.0050,9,0.0100\n"
+            "1000,50,0.6050,9,0.6120\n");
+}
+
+}  // namespace
+}  // namespace samewhere::pipeline

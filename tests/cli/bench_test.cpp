@@ -1,0 +1,86 @@
+// `samewhere bench paper` on a walk that comes back, and on what it cannot use.
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "program.hpp"
+#include <samewhere/core/random.hpp>
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::test {
+namespace {
+
+class BenchPaper : public testing::Test {
+ protected:
+  // Two laps past three walls; the second has half of the light.
+  BenchPaper() {
+    for (int frame = 0; frame < 6; ++frame) {
+      const std::string name = "walk/" + std::to_string(frame) + ".png";
+      folder_.write_png(name, frame < 3 ? wall(frame) : cv::Mat(0.5 * wall(frame - 3)));
+    }
+    folder_.write("walk/same_place.txt",
+                  "1 0 0 0 0 0\n0 1 0 0 0 0\n0 0 1 0 0 0\n1 0 0 1 0 0\n0 1 0 0 1 0\n0 0 1 0 0 1\n");
+  }
+
+  static cv::Mat wall(int number) {
+    core::Random random(static_cast<std::uint64_t>(number));
+    cv::Mat image(120, 160, CV_8U, cv::Scalar(128));
+    for (int i = 0; i < 40; ++i) {
+      const cv::Rect square(static_cast<int>(random.index(130)), static_cast<int>(random.index(90)),
+                            24, 24);
+      image(square).setTo(static_cast<double>(random.index(256)));
+    }
+    return image;
+  }
+
+  Outcome bench(const std::string& arguments) const {
+    return run_program("bench paper " + arguments, folder_.root());
+  }
+  std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
+  std::string walk() const { return quoted(path("walk")); }
+
+  // One line that names `word`, exit code 2, no folder left behind.
+  void expect_clear_error(const std::string& arguments, const std::string& word) const {
+    const Outcome outcome = bench(arguments + " --out " + quoted(path("out")));
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("samewhere: ")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+  }
+
+  input::TestFolder folder_;
+};
+
+TEST_F(BenchPaper, PrintsAndWritesTheTables) {
+  const Outcome outcome =
+      bench(walk() + "@2 --tables 2,3,6 --blind-spot 100 --out " + quoted(path("out")));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("walk, hog: 6 frames, 3 with a loop, window 2 frames, 5 seeds"),
+            std::string::npos)
+      << outcome.out;
+  for (const char* table : {"Table 2", "Table 3", "Table 6"})
+    EXPECT_NE(outcome.out.find(table), std::string::npos) << table;
+  EXPECT_EQ(core::read_file(path("out/tables.txt")), outcome.out);
+  // the exact search finds each wall again
+  EXPECT_NE(core::read_file(path("out/searches.csv")).find("walk,hog,2,exact,0,6,3,1.000000"),
+            std::string::npos);
+  for (const char* file : {"times.csv", "pr-walk-2-hog.svg", "blind-spot.csv", "blind-spot.svg"})
+    EXPECT_TRUE(std::filesystem::exists(path("out") / file)) << file;
+}
+
+TEST_F(BenchPaper, BadInputIsOneLineBeforeAnyWork) {
+  expect_clear_error(walk() + " --tables 2,9", "9");
+  expect_clear_error(walk() + " --describers hog,hog", "hog");
+  expect_clear_error(walk() + " --describers " + quoted(path("nowhere.onnx")), "nowhere.onnx");
+  expect_clear_error(quoted(path("nowhere")), "nowhere");
+  expect_clear_error(walk() + " --set retrieve.num_draws=0", "num_draws");
+  expect_clear_error(walk() + " --blind-spot 3", "blind-spot");
+  std::filesystem::remove(path("walk/same_place.txt"));
+  expect_clear_error(walk() + "@2", "same_place.txt");
+}
+
+}  // namespace
+}  // namespace samewhere::test
