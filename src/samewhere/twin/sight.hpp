@@ -66,7 +66,8 @@ class Eye {
 
   // Share of the query's points, 0 to 1, that the match would see if it stood at `match_in_query`,
   // a viewpoint in the query's world, with everything that it does see, and that look alike there:
-  // same finish, same number or design, same pattern, at most half of it a surface's own. 0 where it is below `least`.
+  // same finish, same number or design, same pattern, at most half of it a surface's own. 0 where
+  // it is below `least`.
   double alike(const Sight& query, const Sight& match, const Viewpoint& match_in_query,
                double least = 0.0) const;
 
