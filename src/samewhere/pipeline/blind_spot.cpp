@@ -177,7 +177,8 @@ std::optional<ViewPool> make_view_pool(const std::vector<Config>& sources,
                                        describe::Describer& describer, int num_stored) {
   int num_frames = 0;
   for (const Config& config : sources) num_frames += open_source(config)->info().num_frames;
-  core::require(num_frames > 0 && num_stored > 0, "a pool has views");
+  core::require(num_stored > 0, "a pool has views");
+  if (num_frames <= 0) throw core::InputError("the sources hold no frame; expected at least one");
   PoolMaker maker(describer, num_frames, num_stored);
   core::Progress progress("frames and crops described", num_frames);
   int num_done = 0;

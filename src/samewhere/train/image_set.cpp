@@ -82,8 +82,8 @@ void read_source(const OpenSource& source, const ReadingProgress& on_progress, I
                                                      core::num_hardware_threads(), source.make);
   for (int i = 0; i < source.num_images && !core::is_interrupted(); ++i) {
     std::optional<cv::Mat> view = *workers.next();
-    if (view) images.views.push_back(*std::move(view));
     ++(view ? count.num_images : count.num_unreadable);
+    if (view) images.views.push_back(*std::move(view));
     on_progress(source.name, i + 1, source.num_images);
   }
   if (count.num_images == 0 && !core::is_interrupted()) {
