@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/twin/frame_workers.hpp>
-#include <samewhere/twin/share_out.hpp>
+#include <samewhere/core/ordered_workers.hpp>
+#include <samewhere/core/share_out.hpp>
 #include <samewhere/twin/twin.hpp>
 
 namespace {
@@ -38,10 +38,10 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
 namespace samewhere::test {
 namespace {
 
+using core::OrderedWorkers;
+using core::share_out;
 using twin::Config;
-using twin::FrameWorkers;
 using twin::open_twin;
-using twin::share_out;
 using twin::Walkthrough;
 
 TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
@@ -49,7 +49,7 @@ TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
     num_started = 0;
     most_threads = num_allowed;
     try {
-      const FrameWorkers<int> workers(1000, 4, [](int index) { return index; });
+      const OrderedWorkers<int> workers(1000, 4, [](int index) { return index; });
       ADD_FAILURE() << "four workers with " << num_allowed << " threads";
     } catch (const core::InputError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("a thread cannot be started: "));

@@ -8,6 +8,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/ordered_workers.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/describe/preprocess.hpp>
@@ -16,7 +17,6 @@
 #include <samewhere/train/examples.hpp>
 #include <samewhere/train/image_set.hpp>
 #include <samewhere/train/sha256.hpp>
-#include <samewhere/twin/frame_workers.hpp>
 #include <samewhere/twin/studio.hpp>
 
 namespace samewhere::train {
@@ -78,8 +78,8 @@ OpenSource open_files(const std::string& name, const Config& config) {
 
 void read_source(const OpenSource& source, const ReadingProgress& on_progress, ImageSet& images) {
   SourceCount count{.source = source.name};
-  twin::FrameWorkers<std::optional<cv::Mat>> workers(source.num_images,
-                                                     core::num_hardware_threads(), source.make);
+  core::OrderedWorkers<std::optional<cv::Mat>> workers(source.num_images,
+                                                       core::num_hardware_threads(), source.make);
   for (int i = 0; i < source.num_images && !core::is_interrupted(); ++i) {
     std::optional<cv::Mat> view = *workers.next();
     ++(view ? count.num_images : count.num_unreadable);

@@ -7,9 +7,9 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/ordered_workers.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/train/trainer.hpp>
-#include <samewhere/twin/frame_workers.hpp>
 
 namespace samewhere::train {
 namespace {
@@ -123,7 +123,7 @@ std::optional<double> Trainer::learn(int epoch, const std::function<void(int, in
   const std::uint64_t seed =
       core::seed_of(seed_of(config_), "epoch", static_cast<std::uint64_t>(epoch));
   // pictures are distorted beside the learning
-  twin::FrameWorkers<Batch> loader(static_cast<int>(batches.size()), 1, [&](int i) {
+  core::OrderedWorkers<Batch> loader(static_cast<int>(batches.size()), 1, [&](int i) {
     return examples_.batch(batches[static_cast<std::size_t>(i)], seed);
   });
   double sum = 0.0;

@@ -4,10 +4,9 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/ordered_workers.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/twin/contact_sheet.hpp>
-#include <samewhere/twin/frame_workers.hpp>
-#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/studio.hpp>
 
 namespace samewhere::twin {
@@ -35,7 +34,7 @@ std::vector<cv::Mat> pictures_of(const Walkthrough& walk, const std::vector<int>
   const Studio studio(walk, config);
   const int num_pictures = static_cast<int>(frames.size());
   core::Progress progress("pictures", num_pictures);
-  FrameWorkers<cv::Mat> workers(num_pictures, num_threads(config), [&](int i) {
+  core::OrderedWorkers<cv::Mat> workers(num_pictures, num_threads(config), [&](int i) {
     return studio.pictures(frames[static_cast<std::size_t>(i)]).images.front();
   });
   std::vector<cv::Mat> pictures;

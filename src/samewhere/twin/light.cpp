@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <samewhere/core/share_out.hpp>
 #include <samewhere/twin/light.hpp>
-#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/texture.hpp>
 
 namespace samewhere::twin {
@@ -220,7 +220,7 @@ Light::Light(const std::vector<Rectangle>& rectangles, const RayScene& rays, int
 
 template <class Compute>
 void Light::fill(SurfaceColours& colours, const Compute& compute) const {
-  share_out(static_cast<int>(rectangles_.size()), num_threads_, [&](int r) {
+  core::share_out(static_cast<int>(rectangles_.size()), num_threads_, [&](int r) {
     if (is_emitting(rectangles_[static_cast<std::size_t>(r)].material)) return;
     fill_rectangle(colours, r, compute(r));
     uncover(colours, r);

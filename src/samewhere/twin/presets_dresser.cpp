@@ -619,6 +619,35 @@ void Dresser::furnish_lounge(int space, int sofa_side) {
   furnisher_.add_plant(spot_before(back, 0.4F, 0.7F));
 }
 
+void Dresser::hang_along_flights(const Eigen::Vector2f& corner_m, float floor_m) {
+  using namespace u_stair;
+  const float foot_m = corner_m.y();
+  const float head_m = foot_m + kFlight_m;
+  const float left_m = corner_m.x();
+  const float right_m = corner_m.x() + kWidth_m;
+  constexpr float kSlope = 0.5F * kStorey_m / kFlight_m;
+  constexpr float kHigher_m = 0.12F;  // the handrail climbs below what hangs
+  // as seen from the flight, which is so high at the wall's left end and climbs by so much a metre
+  const auto hang = [&](const Eigen::Vector2f& from_m, const Eigen::Vector2f& to_m,
+                        float left_end_m, float slope, bool is_framed) {
+    for (const float along_m : {0.25F * kFlight_m, 0.68F * kFlight_m}) {
+      const float step_m = left_end_m + slope * along_m + kHigher_m;
+      const Place place{{from_m, to_m, step_m, step_m + 2.5F}, along_m};
+      if (is_framed) {
+        furnisher_.add_framed_poster(place);
+      } else {
+        furnisher_.add_notice(place);
+      }
+    }
+  };
+  const float half_up_m = floor_m + 0.5F * kStorey_m;
+  hang({right_m, head_m}, {right_m, foot_m}, half_up_m, -kSlope, true);
+  hang({left_m, foot_m}, {left_m, head_m}, floor_m + kStorey_m, -kSlope, true);
+  const float inner_m[2] = {left_m + kFlightWidth_m, left_m + kFlightWidth_m + kCore_m};
+  hang({inner_m[1], foot_m}, {inner_m[1], head_m}, floor_m, kSlope, false);
+  hang({inner_m[0], head_m}, {inner_m[0], foot_m}, half_up_m, kSlope, false);
+}
+
 void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
   using namespace u_stair;
   const float half_m = 0.5F * kStorey_m;
@@ -641,6 +670,9 @@ void Dresser::dress_u_stair(const Eigen::Vector2f& corner_m, float floor_m) {
       {{{right_m, ends_m[1]}, {right_m, ends_m[0]}, back.floor_m, back.ceiling_m}, 0.65F});
   furnisher_.add_notice_board(
       {{{left_m, ends_m[0]}, {left_m, ends_m[1]}, back.floor_m, back.ceiling_m}, 0.65F});
+  furnisher_.add_radiator({back, 0.5F * kWidth_m});
+  furnisher_.add_pipes(back, 2.3F);
+  hang_along_flights(corner_m, floor_m);
   LampFitting lamp = ceiling_.lamp;
   lamp.drop_m = 0.0F;
   lamp.usual_m2 = 0.36F;

@@ -122,6 +122,7 @@ class Dresser {
   static EdgeDesign edge_of(const Style& layout);
 
   void add_surfaces();
+  void hang_along_flights(const Eigen::Vector2f& corner_m, float floor_m);
   void dress_wall(const WallPiece& piece, const Dress& dress);
   std::vector<Eigen::Vector2f> add_bays(Use use, float pitch_m, Gap& gap);
   float shift_of_bay(bool is_door, int bay, int num_bays, float pitch_m);

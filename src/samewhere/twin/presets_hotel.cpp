@@ -109,7 +109,7 @@ World hotel(const Spec& spec) {
 
   World world{.visits = {std::move(draft.building)}};
   Route& route = world.route;
-  route.speed_m_s = 2.0;  // in a hurry: half of the way is stairs and turns, which slow down
+  route.speed_m_s = 2.05;  // in a hurry: half of the way is stairs and turns, which slow down
   route.start_m = on_floor(kDown_m, -1.2, 0);
   route.start_heading_rad = -1.57079632679490;
   constexpr double kStretch_m = 1.2;

@@ -1,11 +1,11 @@
 #include <algorithm>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/depth_sensor.hpp>
 #include <samewhere/twin/motion_blur.hpp>
 #include <samewhere/twin/photograph.hpp>
-#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/studio.hpp>
 
 namespace samewhere::twin {
@@ -21,6 +21,10 @@ View nothing(const core::Camera& camera) {
 }
 
 }  // namespace
+
+int num_threads(const Config& config) {
+  return config.num_workers > 0 ? config.num_workers : core::num_hardware_threads();
+}
 
 Studio::Studio(const Walkthrough& walk, const Config& config)
     : walk_(walk), has_ideal_depth_(config.ideal_depth) {

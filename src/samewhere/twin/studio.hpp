@@ -10,6 +10,9 @@
 
 namespace samewhere::twin {
 
+// How many threads the settings ask for, at least 1.
+int num_threads(const Config& config);
+
 // Takes the pictures of a walk.
 class Studio {
  public:

@@ -15,15 +15,15 @@ float Draws::blend(float low, float high) {
   return static_cast<float>(similarity_ * common + (1.0 - similarity_) * own);
 }
 
-double Draws::pick_uniform(double min_own) {
+double Draws::pick_uniform(double own_chance) {
   const double common = common_.uniform();
   const double own = own_.uniform();
-  was_own_ = own_.uniform() < std::max(1.0 - similarity_, min_own);
+  was_own_ = own_.uniform() < own_chance;
   return was_own_ ? own : common;
 }
 
 int Draws::pick(int count, double min_own) {
-  return static_cast<int>(pick_uniform(min_own) * count);
+  return static_cast<int>(pick_uniform(std::max(1.0 - similarity_, min_own)) * count);
 }
 
 Colour Draws::blend(std::span<const Colour> range) {

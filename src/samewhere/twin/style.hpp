@@ -38,20 +38,27 @@ class Draws {
   Colour blend(std::span<const Colour> range);
   // Discrete choices: own with a chance of 1 - s, or `min_own` if that is more.
   int pick(int count, double min_own = 0.0);
-  bool happens(double chance) { return pick_uniform(0.0) < chance; }
+  bool happens(double chance) { return pick_uniform(own_ratio()) < chance; }
   // To the left or right by up to `most`: a small change of place.
-  float shift(float most) { return static_cast<float>(most * (2.0 * pick_uniform(0.0) - 1.0)); }
+  float shift(float most) {
+    return static_cast<float>(most * (2.0 * pick_uniform(own_ratio()) - 1.0));
+  }
 
   std::uint32_t common_seed() { return static_cast<std::uint32_t>(common_.next()); }
   std::uint32_t own_seed() { return static_cast<std::uint32_t>(own_.next()); }
   // True where the last discrete choice was this one's own.
   bool was_own() const { return was_own_; }
-  // Many small choices that go together: own or common as one.
-  std::uint32_t design() { return static_cast<std::uint32_t>(pick(1 << 30)); }
+  // Many small choices that go together, own or common as one. Own with a chance of (1 - s)^2 only:
+  // one draw decides on all doors of a unit, and the same fittings run through a building long
+  // before its rooms are alike in everything else.
+  std::uint32_t design() {
+    return static_cast<std::uint32_t>(pick_uniform(own_ratio() * own_ratio()) * (1 << 30));
+  }
   float own_ratio() const { return static_cast<float>(1.0 - similarity_); }
 
  private:
-  double pick_uniform(double min_own);
+  // In [0, 1): own with that chance, else common.
+  double pick_uniform(double own_chance);
 
   double similarity_;
   core::Random common_;

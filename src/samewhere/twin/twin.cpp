@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <samewhere/twin/frame_workers.hpp>
+#include <samewhere/core/ordered_workers.hpp>
 #include <samewhere/twin/picture_cache.hpp>
-#include <samewhere/twin/share_out.hpp>
 #include <samewhere/twin/source_hash.hpp>
 #include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/twin.hpp>
@@ -106,8 +105,8 @@ class TwinSource : public core::Source {
   PictureCache cache_;
   std::optional<Studio> studio_;  // while no worker runs it may be opened
   bool is_refusal_told_ = false;
-  std::exception_ptr failure_;                 // no frames come after it
-  std::optional<FrameWorkers<Made>> workers_;  // last: they end before what they use
+  std::exception_ptr failure_;                         // no frames come after it
+  std::optional<core::OrderedWorkers<Made>> workers_;  // last: they end before what they use
 };
 
 }  // namespace

@@ -10,8 +10,10 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/camera.hpp>
+#include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/twin.hpp>
 
 namespace samewhere::twin {
@@ -140,6 +142,11 @@ TEST(Twin, WhoWatchesTheTruthMayEndIt) {
   core::catch_interrupts();
   std::raise(SIGINT);
   EXPECT_THROW(watched_truth(other), core::Interrupted);
+}
+
+TEST(Twin, TheSettingsSayHowManyThreads) {
+  EXPECT_EQ(num_threads({.num_workers = 3}), 3);
+  EXPECT_EQ(num_threads({}), core::num_hardware_threads());
 }
 
 TEST(Twin, ABadSpecIsRefused) { EXPECT_THROW(open_twin("twin:castle", {}), core::InputError); }

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <samewhere/twin/share_out.hpp>
+#include <samewhere/core/share_out.hpp>
 
-namespace samewhere::twin {
+namespace samewhere::core {
 namespace {
 
 TEST(ShareOut, AllThatIsDoneIsSeenAfterwards) {
@@ -29,10 +29,5 @@ TEST(ShareOut, AnErrorWaitsForTheOthers) {
   EXPECT_EQ(std::accumulate(times.begin(), times.end(), 0), 30) << "three shares of four";
 }
 
-TEST(ShareOut, TheSettingsSayHowManyThreads) {
-  EXPECT_EQ(num_threads({.num_workers = 3}), 3);
-  EXPECT_EQ(num_threads({}), core::num_hardware_threads());
-}
-
 }  // namespace
-}  // namespace samewhere::twin
+}  // namespace samewhere::core

@@ -2,23 +2,23 @@
 
 #include <gtest/gtest.h>
 
-#include <samewhere/twin/frame_workers.hpp>
+#include <samewhere/core/ordered_workers.hpp>
 
-namespace samewhere::twin {
+namespace samewhere::core {
 namespace {
 
-TEST(FrameWorkers, GiveAllFramesInOrderWhateverTheirNumber) {
+TEST(OrderedWorkers, GiveAllItemsInOrderWhateverTheirNumber) {
   for (const int num_workers : {1, 2, 5}) {
-    FrameWorkers<int> workers(23, num_workers, [](int index) { return index * index; });
+    OrderedWorkers<int> workers(23, num_workers, [](int index) { return index * index; });
     for (int i = 0; i < 23; ++i) EXPECT_EQ(workers.next(), i * i) << num_workers;
     EXPECT_EQ(workers.next(), std::nullopt);
     EXPECT_EQ(workers.next(), std::nullopt);
   }
 }
 
-TEST(FrameWorkers, AnErrorComesOutWithItsFrame) {
+TEST(OrderedWorkers, AnErrorComesOutWithItsItem) {
   for (const int num_workers : {1, 2, 5}) {
-    FrameWorkers<int> workers(20, num_workers, [](int index) {
+    OrderedWorkers<int> workers(20, num_workers, [](int index) {
       if (index == 7) throw std::runtime_error("no light");
       return index;
     });
@@ -28,12 +28,12 @@ TEST(FrameWorkers, AnErrorComesOutWithItsFrame) {
   }
 }
 
-TEST(FrameWorkers, MayBeLeftAtAnyTimeAndDoNotRunFarAhead) {
+TEST(OrderedWorkers, MayBeLeftAtAnyTimeAndDoNotRunFarAhead) {
   for (int num_taken = 0; num_taken < 6; ++num_taken) {
     constexpr int kNumWorkers = 3;
     std::vector<char> is_made(1000, 0);
     {
-      FrameWorkers<int> workers(1000, kNumWorkers, [&](int index) {
+      OrderedWorkers<int> workers(1000, kNumWorkers, [&](int index) {
         is_made[static_cast<std::size_t>(index)] = 1;
         return index;
       });
@@ -48,10 +48,10 @@ TEST(FrameWorkers, MayBeLeftAtAnyTimeAndDoNotRunFarAhead) {
   }
 }
 
-TEST(FrameWorkers, NoFramesAreAnEnd) {
-  FrameWorkers<int> workers(0, 2, [](int index) { return index; });
+TEST(OrderedWorkers, NoItemsAreAnEnd) {
+  OrderedWorkers<int> workers(0, 2, [](int index) { return index; });
   EXPECT_EQ(workers.next(), std::nullopt);
 }
 
 }  // namespace
-}  // namespace samewhere::twin
+}  // namespace samewhere::core
