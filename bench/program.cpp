@@ -1,51 +1,29 @@
 #include "program.hpp"
 
 #include <cstdio>
-#include <exception>
+#include <filesystem>
 
-#include <opencv2/core/utility.hpp>
-
-#include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/program.hpp>
 
 namespace samewhere::bench {
-namespace {
-
-constexpr int kBadInput = 2;
-constexpr int kBrokenPromise = 3;
-
-int complain(const CLI::App& app, const std::string& message, int exit_code) {
-  std::fputs((app.get_name() + ": " + message + "\n").c_str(), stderr);
-  return exit_code;
-}
-
-int parse_and_work(CLI::App& app, int argc, char** argv, SetUp set_up) {
-  try {
-    const std::function<void()> work = set_up(app);
-    app.parse(argc, argv);
-    work();
-  } catch (const CLI::ParseError& error) {
-    // help is no error
-    if (error.get_exit_code() == 0) return app.exit(error);
-    return complain(app, std::string(error.what()) + " (see --help)", kBadInput);
-  } catch (const core::InputError& error) {
-    return complain(app, error.what(), kBadInput);
-  } catch (const std::exception& error) {
-    return complain(app, std::string("this is a bug of ours: ") + error.what(), kBrokenPromise);
-  }
-  return 0;
-}
-
-}  // namespace
 
 int run_program(int argc, char** argv, SetUp set_up) noexcept {
-  try {
-    cv::setNumThreads(1);
+  const std::string name = std::filesystem::path(argv[0]).filename().string();
+  return core::run_program(name, [&] {
     CLI::App app;
-    return parse_and_work(app, argc, argv, set_up);
-  } catch (...) {
-    return kBrokenPromise;  // not even a message could be made
-  }
+    const std::function<void()> work = set_up(app);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      // help is no error
+      if (error.get_exit_code() == 0) return app.exit(error);
+      return core::complain(app.get_name(), std::string(error.what()) + " (see --help)",
+                            core::kBadInput);
+    }
+    work();
+    return core::kDone;
+  });
 }
 
 void publish(const Table& table, const std::string& csv_file) {

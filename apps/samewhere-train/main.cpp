@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -13,13 +12,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <malloc.h>
-#include <opencv2/core/utility.hpp>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/program.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/train/commit.hpp>
@@ -27,11 +25,6 @@
 
 namespace samewhere::train {
 namespace {
-
-constexpr int kDone = 0;
-constexpr int kBadInput = 2;
-constexpr int kBrokenPromise = 3;
-constexpr int kInterrupted = 130;
 
 constexpr const char* kExamples =
     "Examples:\n"
@@ -85,15 +78,6 @@ class OptionMaker : public core::FieldVisitor {
   CLI::App& app_;
   std::map<std::string, std::string>& given_;
 };
-
-// One line, whatever the library put into the message.
-int complain(std::string message, int exit_code) {
-  for (char& c : message) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  std::fputs(("samewhere: " + message + "\n").c_str(), stderr);
-  return exit_code;
-}
 
 std::string as_typed(int argc, char** argv) {
   std::string command = "samewhere train";
@@ -159,13 +143,13 @@ bool run_epoch(Trainer& trainer, int num_epochs) {
 int interrupted(const Trainer& trainer) {
   fmt::print(stderr, "samewhere: interrupted after epoch {}; the same command goes on from there\n",
              trainer.history().size());
-  return kInterrupted;
+  return core::kInterruptedExit;
 }
 
 int train(const Job& job) {
   check_out(job.out);
   const ImageSet images = read(job);
-  if (core::is_interrupted()) return kInterrupted;
+  if (core::is_interrupted()) return core::kInterruptedExit;
   Trainer trainer(job.config, images, checkpoint_of(job.out));
   fmt::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
              trainer.split().validation.size());
@@ -179,7 +163,7 @@ int train(const Job& job) {
       "{}: epoch {}, validation loss {:.4f}, recognition of warped views {:.1f} % (HOG {:.1f} %)\n",
       job.out.string(), quality.best.epoch, quality.best.validation_error,
       100.0 * quality.recognition, 100.0 * quality.recognition_of_hog);
-  return kDone;
+  return core::kDone;
 }
 
 void use_threads(int num_threads) {
@@ -206,7 +190,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    return complain(std::string(error.what()) + " (see samewhere train --help)", kBadInput);
+    return core::complain("samewhere", std::string(error.what()) + " (see samewhere train --help)",
+                          core::kBadInput);
   }
   for (const auto& [key, text] : given) core::set_config(job.config, key + "=" + text);
   core::catch_interrupts();
@@ -219,15 +204,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace samewhere;
-  cv::setNumThreads(1);
-  spdlog::set_default_logger(spdlog::stderr_logger_st("samewhere"));
-  spdlog::set_pattern("%n: %l: %v");
-  try {
-    return train::run(argc, argv);
-  } catch (const core::InputError& error) {
-    return train::complain(error.what(), train::kBadInput);
-  } catch (const std::exception& error) {
-    return train::complain(std::string("this is a bug of ours: ") + error.what(),
-                           train::kBrokenPromise);
-  }
+  return core::run_program("samewhere", [&] { return train::run(argc, argv); });
 }

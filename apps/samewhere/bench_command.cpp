@@ -13,6 +13,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/program.hpp>
 #include <samewhere/pipeline/blind_spot.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
 #include <samewhere/pipeline/paper_runs.hpp>
@@ -116,12 +117,12 @@ int execute(const PaperCommand& command) {
   const std::vector<pipeline::Config> configs = configs_of(command, config);
   PaperOutput output(command.out, numbers);
   for (const auto& each : configs) {
-    if (!measure_tables(each, describers, output)) return kInterrupted;
+    if (!measure_tables(each, describers, output)) return core::kInterruptedExit;
   }
-  if (command.blind_spot_views == 0) return kDone;
+  if (command.blind_spot_views == 0) return core::kDone;
   const bool is_done =
       measure_blind_spot(configs, command.blind_spot_views, *describers.front().describer, output);
-  return is_done ? kDone : kInterrupted;
+  return is_done ? core::kDone : core::kInterruptedExit;
 }
 
 void add_paper_command(CLI::App& bench, int& exit_code) {

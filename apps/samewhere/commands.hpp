@@ -4,12 +4,6 @@
 
 namespace samewhere::app {
 
-// Exit codes that scripts rely on.
-inline constexpr int kDone = 0;
-inline constexpr int kBadInput = 2;
-inline constexpr int kBrokenPromise = 3;
-inline constexpr int kInterrupted = 130;
-
 // Each adds its command; when it was chosen, its work runs during parsing and leaves the exit code
 // in `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);

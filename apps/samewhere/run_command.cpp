@@ -11,6 +11,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/program.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run.hpp>
 #include <samewhere/report/funnel.hpp>
@@ -107,7 +108,7 @@ int execute(const RunCommand& command, Work work) {
   write(outcome, work, folder);
   print_outcome(outcome, folder);
   if (outcome.record.input_error) throw core::InputError(*outcome.record.input_error);
-  return outcome.record.is_interrupted ? kInterrupted : kDone;
+  return outcome.record.is_interrupted ? core::kInterruptedExit : core::kDone;
 }
 
 CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, Work work,
