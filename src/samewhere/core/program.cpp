@@ -23,8 +23,8 @@ int complain(const std::string& name, std::string message, int exit_code) {
 int run_program(const std::string& name, const std::function<int()>& work) noexcept {
   try {
     cv::setNumThreads(1);
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-        name, std::make_shared<spdlog::sinks::stderr_sink_st>()));
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stderr_sink_st>()));
     spdlog::set_pattern("%n: %l: %v");
     try {
       return work();

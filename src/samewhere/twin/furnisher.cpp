@@ -15,8 +15,6 @@ Eigen::Vector3f right_of(const Wall& wall) {
   return {along.x(), along.y(), 0.0F};
 }
 
-float length_m(const Wall& wall) { return (wall.to_m - wall.from_m).norm(); }
-
 // Tells the planes of walls apart, to a centimetre: pieces of one plane have one pattern.
 std::uint32_t plane_of(const Wall& wall) {
   const Eigen::Vector3f right = right_of(wall);
@@ -119,7 +117,7 @@ void Furnisher::add_wall(const Wall& wall, float low_m, float high_m, WallFinish
   constexpr float kShortest_m = 1.5F;
   Piece piece = piece_at(wall);
   const Material material = wall_material(piece, finish, plane_of(wall));
-  const float long_m = length_m(wall);
+  const float long_m = wall.length_m();
   const Box span{{0.0F, low_m - wall.floor_m, 0.0F}, {long_m, high_m - wall.floor_m, 0.0F}};
   const std::size_t first = building_.rectangles.size();
   piece.add_panel({.corner_m = span.low_m, .size_m = {long_m, high_m - low_m}}, material);
@@ -188,7 +186,7 @@ void Furnisher::add_cornice(const Wall& wall, float width_m, float height_m) {
   Piece piece = piece_at(wall);
   const Material white = piece.made_of(Finish::kPaint, palette_.ceiling);
   const float top_m = wall.ceiling_m - wall.floor_m;
-  const float long_m = length_m(wall);
+  const float long_m = wall.length_m();
   // where two walls meet, the faces of one are a hair beside those of the other
   const bool is_along_x = std::abs(right_of(wall).x()) > 0.5F;
   const float hair_m = is_along_x ? 0.001F : 0.002F;
@@ -201,7 +199,7 @@ void Furnisher::add_cable_duct(const Wall& wall, float below_m) {
   const Colour grey = colour_of_srgb(0.80F, 0.80F, 0.78F);
   const Material material = piece.made_of(Finish::kPlastic, grey);
   const float top_m = wall.ceiling_m - wall.floor_m - below_m;
-  piece.add_box({{0.0F, top_m - 0.05F, 0.0F}, {length_m(wall), top_m, 0.035F}},
+  piece.add_box({{0.0F, top_m - 0.05F, 0.0F}, {wall.length_m(), top_m, 0.035F}},
                 {material, material});
 }
 
@@ -210,7 +208,7 @@ void Furnisher::add_handrail(const Wall& wall, float rise_m) {
   constexpr float kOut_m = 0.075F;
   constexpr float kPerBracket_m = 1.0F;
   Piece piece = piece_at(wall);
-  const float long_m = length_m(wall);
+  const float long_m = wall.length_m();
   const Material rail = piece.made_of(Finish::kWood, palette_.wood);
   const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
   piece.begin_object("handrail");
@@ -237,7 +235,7 @@ void Furnisher::add_handrail(const Wall& wall, float rise_m) {
 void Furnisher::add_pipes(const Wall& wall, float height_m) {
   constexpr float kPerClamp_m = 1.4F;
   Piece piece = piece_at(wall);
-  const float long_m = length_m(wall);
+  const float long_m = wall.length_m();
   const Material steel = piece.made_of(Finish::kSteel, paints::kMetal);
   const Colour coats[] = {0.9F * paints::kWhite, paints::kGrey, 0.7F * paints::kMetal,
                           0.6F * paints::kRed + 0.2F * paints::kGrey, paints::kGreen};

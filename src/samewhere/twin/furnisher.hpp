@@ -15,6 +15,8 @@ struct Wall {
   Eigen::Vector2f to_m = Eigen::Vector2f::UnitX();
   float floor_m = 0.0F;  // height of the floor before it
   float ceiling_m = 2.6F;
+
+  float length_m() const { return (to_m - from_m).norm(); }
 };
 
 // Where on a wall the middle of a thing is.
