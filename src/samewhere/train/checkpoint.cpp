@@ -23,6 +23,16 @@ std::size_t num_weights(const ConvolutionPlan& plan) {
          static_cast<std::size_t>(plan.kernel_px * plan.kernel_px);
 }
 
+std::string bytes_of(const std::vector<float>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)};
+}
+
+std::vector<float> numbers_of(std::string_view bytes) {
+  std::vector<float> numbers(bytes.size() / sizeof(float));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(float));
+  return numbers;
+}
+
 [[noreturn]] void fail(const std::filesystem::path& path, std::string_view why) {
   throw InputError(
       fmt::format("{}: {}, expected the checkpoint of a training; remove it to begin anew",
@@ -40,11 +50,10 @@ Checkpoint from_header(const json& header) {
 
 }  // namespace
 
-// The file: one line of JSON, then the two blocks of bytes whose lengths and checksum it gives.
+// The file: one line of JSON, then the three blocks of bytes whose lengths and checksum it gives.
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  std::string blocks = checkpoint.autoencoder;
-  blocks.append(reinterpret_cast<const char*>(checkpoint.best_parameters.data()),
-                checkpoint.best_parameters.size() * sizeof(float));
+  const std::string blocks = checkpoint.autoencoder + bytes_of(checkpoint.best_parameters) +
+                             bytes_of(checkpoint.best_codes);
   json history = json::array();
   for (const EpochFigures& epoch : checkpoint.history) {
     history.push_back({epoch.epoch, epoch.training_error, epoch.validation_error});
@@ -55,6 +64,7 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
                        {"history", history},
                        {"num_autoencoder_bytes", checkpoint.autoencoder.size()},
                        {"num_best_parameters", checkpoint.best_parameters.size()},
+                       {"num_best_codes", checkpoint.best_codes.size()},
                        {"sha256", sha256_of(blocks)}};
   core::write_file(path, header.dump() + "\n" + blocks);
 }
@@ -70,15 +80,16 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
     const std::string_view blocks = std::string_view(content).substr(end + 1);
     const auto num_bytes = header.at("num_autoencoder_bytes").get<std::size_t>();
     const auto num_parameters = header.at("num_best_parameters").get<std::size_t>();
+    const auto num_codes = header.at("num_best_codes").get<std::size_t>();
+    const std::size_t codes_start = num_bytes + num_parameters * sizeof(float);
     if (sha256_of(blocks) != header.at("sha256").get<std::string>() ||
-        blocks.size() != num_bytes + num_parameters * sizeof(float)) {
+        blocks.size() != codes_start + num_codes * sizeof(float)) {
       fail(path, "is damaged or cut short");
     }
     Checkpoint checkpoint = from_header(header);
     checkpoint.autoencoder = blocks.substr(0, num_bytes);
-    checkpoint.best_parameters.resize(num_parameters);
-    std::memcpy(checkpoint.best_parameters.data(), blocks.data() + num_bytes,
-                num_parameters * sizeof(float));
+    checkpoint.best_parameters = numbers_of(blocks.substr(num_bytes, codes_start - num_bytes));
+    checkpoint.best_codes = numbers_of(blocks.substr(codes_start));
     return checkpoint;
   } catch (const json::exception&) {
     fail(path, "is damaged");

@@ -23,6 +23,7 @@ struct Checkpoint {
   std::vector<EpochFigures> history;
   std::string autoencoder;             // Autoencoder::state() after the last epoch
   std::vector<float> best_parameters;  // of the encoder with the least validation error
+  std::vector<float> best_codes;       // its codes of a few views, one after the other
 };
 
 // Writes the whole file or nothing. Throws InputError: no space, no permission.

@@ -156,4 +156,8 @@ Batch ExampleMaker::batch(std::span<const int> indices, std::uint64_t seed) cons
   return batch;
 }
 
+cv::Mat ExampleMaker::input(int index) const {
+  return encoder_input(views_[static_cast<std::size_t>(index)], config_.input_size);
+}
+
 }  // namespace samewhere::train

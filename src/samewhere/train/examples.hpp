@@ -51,6 +51,8 @@ class ExampleMaker {
 
   // Distorted views `indices` and their scaled targets. View i is distorted as `seed` and i say.
   Batch batch(std::span<const int> indices, std::uint64_t seed) const;
+  // The view as it is.
+  cv::Mat input(int index) const;
 
  private:
   Config config_;

@@ -16,6 +16,8 @@ namespace {
 
 using core::InputError;
 
+constexpr std::size_t kNumChecked = 16;  // views that trained and exported network are compared on
+
 std::uint64_t seed_of(const Config& config) { return static_cast<std::uint64_t>(config.seed); }
 
 std::vector<std::vector<int>> cut(const std::vector<int>& order, int batch) {
@@ -152,6 +154,26 @@ double Trainer::validation_error() {
   return sum / static_cast<double>(split_.validation.size());
 }
 
+// Spread over the validation views.
+std::vector<cv::Mat> Trainer::checked_inputs() const {
+  const std::size_t num_views = split_.validation.size();
+  const std::size_t num_checked = std::min(kNumChecked, num_views);
+  std::vector<cv::Mat> inputs;
+  for (std::size_t i = 0; i < num_checked; ++i) {
+    inputs.push_back(examples_.input(split_.validation[i * num_views / num_checked]));
+  }
+  return inputs;
+}
+
+std::vector<float> Trainer::checked_codes() {
+  std::vector<float> codes;
+  for (const cv::Mat& input : checked_inputs()) {
+    const std::vector<float> code = autoencoder_.encode({input.ptr<float>(), input.total()});
+    codes.insert(codes.end(), code.begin(), code.end());
+  }
+  return codes;
+}
+
 std::optional<EpochFigures> Trainer::run_epoch(const std::function<void(int, int)>& on_progress) {
   EpochFigures figures{.epoch = static_cast<int>(history().size()) + 1};
   const std::optional<double> training_error = learn(figures.epoch, on_progress);
@@ -162,6 +184,7 @@ std::optional<EpochFigures> Trainer::run_epoch(const std::function<void(int, int
   state_.autoencoder = autoencoder_.state();
   if (best_epoch().epoch == figures.epoch) {
     state_.best_parameters = parameters_of(autoencoder_.encoder());
+    state_.best_codes = checked_codes();
   }
   write_checkpoint(checkpoint_path_, state_);
   return figures;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <samewhere/train/autoencoder.hpp>
@@ -37,12 +38,18 @@ class Trainer {
   EpochFigures best_epoch() const;
   Encoder best_encoder() const;
 
+  // Up to 16 validation views as the encoder sees them, and what the network itself, not its
+  // export, made of them when it was best: one code after the other.
+  std::vector<cv::Mat> checked_inputs() const;
+  std::span<const float> best_codes() const { return state_.best_codes; }
+
  private:
   void resume();
   double learning_rate(int epoch) const;
   std::vector<std::vector<int>> training_batches(int epoch) const;
   std::optional<double> learn(int epoch, const std::function<void(int, int)>& on_progress);
   double validation_error();
+  std::vector<float> checked_codes();
 
   Config config_;
   std::filesystem::path checkpoint_path_;

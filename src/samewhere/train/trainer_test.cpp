@@ -1,3 +1,4 @@
+#include <cmath>
 #include <csignal>
 
 #include <gmock/gmock.h>
@@ -8,7 +9,6 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/train/network_file.hpp>
-#include <samewhere/train/onnx_runner.hpp>
 #include <samewhere/train/sha256.hpp>
 #include <samewhere/train/test_images.hpp>
 
@@ -133,8 +133,45 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   EXPECT_EQ(card["images"]["sources"][0]["num_images"], 24);
   EXPECT_EQ(card["epochs"].size(), 4U);
   EXPECT_EQ(card["commit"], "abc");
-  const cv::Mat input = encoder_input(images_.views[0], job.config.input_size);
-  EXPECT_EQ(OnnxRunner(network).encode(input).size(), 245U);
+  const auto inference = describe::make_inference(describe::read_network(job.out));
+  EXPECT_LE(export_error(*inference, trainer.checked_inputs(), trainer.best_codes()), 1e-5);
+}
+
+// The training goes on past its best epoch, so that network and last network differ.
+TEST_F(Training, WritesTheNetworkThatWasBestOrNone) {
+  Config config = test_config();
+  config.epochs = 20;
+  config.patience = 2;
+  config.learning_rate = 0.3;  // too much: it jumps about
+  const Job job{.images = {"pictures"}, .out = path("jumpy.onnx"), .config = config};
+  const auto checkpoint = checkpoint_of(job.out);
+  {
+    Trainer trainer(config, images_, checkpoint);
+    while (!trainer.is_done()) run_epochs(trainer, 1);
+    ASSERT_NE(parameters_of(trainer.best_encoder()),
+              parameters_of(trainer.autoencoder().encoder()));
+  }
+  const Checkpoint good = read_checkpoint(checkpoint);
+  const auto write_after = [&](const auto& change) {
+    Checkpoint changed = good;
+    change(changed);
+    write_checkpoint(checkpoint, changed);
+    Trainer trainer(config, images_, checkpoint);
+    write_network(job, images_, trainer);
+  };
+  EXPECT_THROW(write_after([](Checkpoint& c) { c.best_parameters[0] += 0.01F; }),
+               core::ContractError);
+  EXPECT_THROW(write_after([](Checkpoint& c) { c.best_codes[0] = NAN; }), core::ContractError);
+  EXPECT_THAT(
+      complaint([&] { write_after([](Checkpoint& c) { c.best_parameters[0] = INFINITY; }); }),
+      HasSubstr("not finite"));
+  EXPECT_THAT(complaint([&] {
+                write_after([](Checkpoint& c) { c.best_codes.assign(c.best_codes.size(), 0.0F); });
+              }),
+              HasSubstr("zeros"));
+  EXPECT_FALSE(std::filesystem::exists(job.out));
+  EXPECT_EQ(complaint([&] { write_after([](Checkpoint&) {}); }), "no error");
+  EXPECT_TRUE(std::filesystem::exists(job.out));
 }
 
 }  // namespace
