@@ -120,6 +120,13 @@ std::vector<std::vector<int>> Trainer::training_batches(int epoch) const {
   return batches;
 }
 
+void Trainer::require_finite(double error, int epoch) const {
+  if (std::isfinite(error)) return;
+  throw InputError(fmt::format(
+      "learning_rate = {}: the loss is no longer finite in epoch {}, expected a smaller one",
+      config_.learning_rate, epoch));
+}
+
 std::optional<double> Trainer::learn(int epoch, const std::function<void(int, int)>& on_progress) {
   const std::vector<std::vector<int>> batches = training_batches(epoch);
   const std::uint64_t seed =
@@ -133,11 +140,7 @@ std::optional<double> Trainer::learn(int epoch, const std::function<void(int, in
   while (const std::optional<Batch> batch = loader.next()) {
     if (core::is_interrupted()) return std::nullopt;
     sum += batch->num_examples * autoencoder_.learn(*batch, learning_rate(epoch));
-    if (!std::isfinite(sum)) {
-      throw InputError(fmt::format(
-          "learning_rate = {}: the loss is no longer finite in epoch {}, expected a smaller one",
-          config_.learning_rate, epoch));
-    }
+    require_finite(sum, epoch);
     num_done += batch->num_examples;
     on_progress(num_done, static_cast<int>(split_.training.size()));
   }
@@ -180,6 +183,7 @@ std::optional<EpochFigures> Trainer::run_epoch(const std::function<void(int, int
   if (!training_error) return std::nullopt;
   figures.training_error = *training_error;
   figures.validation_error = validation_error();
+  require_finite(figures.validation_error, figures.epoch);
   state_.history.push_back(figures);
   state_.autoencoder = autoencoder_.state();
   if (best_epoch().epoch == figures.epoch) {

@@ -30,8 +30,8 @@ class Trainer {
 
   // One pass over the images, told to `on_progress` (images done, images in all). Nothing if
   // core::is_interrupted() ended it after a batch: what it learnt is lost, the epochs before are in
-  // the checkpoint. Throws InputError if the checkpoint cannot be written or the loss is no longer
-  // finite.
+  // the checkpoint. Throws InputError if the checkpoint cannot be written, or if the loss, of
+  // training or of validation, is no longer finite: the checkpoint stays that of the epoch before.
   std::optional<EpochFigures> run_epoch(const std::function<void(int, int)>& on_progress);
 
   // The epoch with the least validation error so far, and its encoder. At least one epoch is done.
@@ -47,6 +47,7 @@ class Trainer {
   void resume();
   double learning_rate(int epoch) const;
   std::vector<std::vector<int>> training_batches(int epoch) const;
+  void require_finite(double error, int epoch) const;
   std::optional<double> learn(int epoch, const std::function<void(int, int)>& on_progress);
   double validation_error();
   std::vector<float> checked_codes();

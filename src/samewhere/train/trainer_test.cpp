@@ -112,6 +112,19 @@ TEST_F(Training, EndsWhenValidationGetsNoBetter) {
   EXPECT_EQ(static_cast<int>(trainer.history().size()), trainer.best_epoch().epoch + 2);
 }
 
+// Of one batch an epoch the training loss is the one before the step: only validation sees what the
+// step has done.
+TEST_F(Training, ARuinedNetworkReachesNeitherCheckpointNorChoice) {
+  Config config = test_config();
+  config.batch = 1024;
+  config.learning_rate = 1e30;
+  Trainer trainer(config, images_, path("checkpoint"));
+  EXPECT_THAT(complaint([&] { trainer.run_epoch([](int, int) {}); }),
+              testing::AllOf(HasSubstr("learning_rate"), HasSubstr("epoch 1")));
+  EXPECT_TRUE(trainer.history().empty());
+  EXPECT_FALSE(std::filesystem::exists(path("checkpoint")));
+}
+
 TEST_F(Training, LeavesANetworkAndItsCard) {
   const Job job{.images = {"pictures"},
                 .out = path("small.onnx"),
