@@ -29,6 +29,7 @@ namespace {
 constexpr const char* kExamples =
     "Examples:\n"
     "  samewhere train --images photos twin:hotel?seed=7 --out models/mine.onnx\n"
+    "  samewhere train --images gallery.txt --validate twin:hotel?seed=8 --out mine.onnx\n"
     "  samewhere train --images gallery.txt --out small.onnx --code-size 280 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp off\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
@@ -105,12 +106,13 @@ void check_out(const std::filesystem::path& out) {
 ImageSet read(const Job& job) {
   std::string current;
   std::optional<core::Progress> progress;
-  ImageSet images =
-      read_images(job.images, job.config, [&](const std::string& source, int done, int total) {
-        if (source != current) progress.emplace("reading " + source, total);
-        current = source;
-        progress->update(done);
-      });
+  ImageSet images = read_images(job.images, job.validate, job.config,
+                                [&](const std::string& source, int done, int total) {
+                                  if (source != current)
+                                    progress.emplace("reading " + source, total);
+                                  current = source;
+                                  progress->update(done);
+                                });
   progress.reset();
   for (const SourceCount& source : images.sources) {
     fmt::print("{}: {} images", source.source, source.num_images);
@@ -181,6 +183,9 @@ int run(int argc, char** argv) {
   app.add_option("--images", job.images,
                  "recordings, folders of images, lists of images, twin:PRESET?seed=3")
       ->required();
+  app.add_option("--validate", job.validate,
+                 "the same, of other places: only to tell how well it goes; without it, blocks of "
+                 "--images are held back for that");
   app.add_option("--out", job.out, "FILE.onnx, a name that is free")->required();
   std::map<std::string, std::string> given;
   OptionMaker make_options(app, given);

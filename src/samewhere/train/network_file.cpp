@@ -49,17 +49,25 @@ json layers_as_json(const NetworkPlan& plan) {
   return layers;
 }
 
-json images_as_json(const ImageSet& images, const Split& split) {
+json sources_as_json(const ImageSet& images, bool is_held_back) {
   json sources = json::array();
   for (const SourceCount& source : images.sources) {
+    if (source.is_held_back != is_held_back) continue;
     sources.push_back({{"source", source.source},
                        {"num_images", source.num_images},
                        {"num_unreadable", source.num_unreadable}});
   }
-  return {{"sources", sources},
+  return sources;
+}
+
+json images_as_json(const ImageSet& images, const Split& split) {
+  json validation_sources = sources_as_json(images, true);
+  if (validation_sources.empty()) validation_sources = "blocks of the sources";
+  return {{"sources", sources_as_json(images, false)},
+          {"validation_sources", validation_sources},
           {"num_training", split.training.size()},
           {"num_validation", split.validation.size()},
-          {"sha256_of_prepared_pixels", images.sha256}};
+          {"sha256_of_prepared_images", images.sha256}};
 }
 
 json epochs_as_json(const std::vector<EpochFigures>& history) {

@@ -12,8 +12,9 @@ namespace samewhere::train {
 
 // What a person asked for.
 struct Job {
-  std::vector<std::string> images;  // sources
-  std::filesystem::path out;        // *.onnx
+  std::vector<std::string> images;    // sources to learn from
+  std::vector<std::string> validate;  // sources to validate with; none: blocks of the others
+  std::filesystem::path out;          // *.onnx
   Config config;
   std::string command;  // as it was typed, for the card
   std::string version;  // of the program, and the commit it was built from

@@ -68,7 +68,7 @@ Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::
     : config_(config),
       checkpoint_path_(std::move(checkpoint)),
       plan_(plan_network(config)),
-      split_(split_by_blocks(static_cast<int>(images.views.size()), seed_of(config))),
+      split_(split_views(images, seed_of(config))),
       examples_(config, images.views,
                 scale_of_targets(images.views, split_.training, config.target)),
       state_{.settings = settings_text(config), .images_sha256 = images.sha256},

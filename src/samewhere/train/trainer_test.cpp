@@ -136,18 +136,31 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   run_epochs(trainer, 4);
   const Quality quality = write_network(job, images_, trainer);
   EXPECT_FALSE(std::filesystem::exists(checkpoint_of(job.out)));
-  EXPECT_GE(quality.recognition, 0.0);
-  EXPECT_LE(quality.recognition, 1.0);
+  EXPECT_EQ(quality.best.epoch, trainer.best_epoch().epoch);
 
   const std::string network = core::read_file(job.out);
   const auto card = nlohmann::json::parse(core::read_file(card_of(job.out)));
   EXPECT_EQ(card["sha256"], sha256_of(network));
   EXPECT_EQ(card["settings"]["code_size"], "245");
   EXPECT_EQ(card["images"]["sources"][0]["num_images"], 24);
+  EXPECT_EQ(card["images"]["validation_sources"], "blocks of the sources");
   EXPECT_EQ(card["epochs"].size(), 4U);
   EXPECT_EQ(card["commit"], "abc");
   const auto inference = describe::make_inference(describe::read_network(job.out));
   EXPECT_LE(export_error(*inference, trainer.checked_inputs(), trainer.best_codes()), 1e-5);
+}
+
+TEST_F(Training, TheCardNamesTheSourcesToValidateWith) {
+  images_.sources = {{"pictures", 20}, {"other pictures", 4, 1, true}};
+  const Job job{.out = path("small.onnx"), .config = test_config()};
+  Trainer trainer(job.config, images_, checkpoint_of(job.out));
+  run_epochs(trainer, 1);
+  write_network(job, images_, trainer);
+  const auto card = nlohmann::json::parse(core::read_file(card_of(job.out)));
+  EXPECT_EQ(card["images"]["sources"].size(), 1U);
+  EXPECT_EQ(card["images"]["validation_sources"][0]["source"], "other pictures");
+  EXPECT_EQ(card["images"]["num_training"], 20);
+  EXPECT_EQ(card["images"]["num_validation"], 4);
 }
 
 // The training goes on past its best epoch, so that network and last network differ.
