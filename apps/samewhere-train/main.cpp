@@ -1,5 +1,6 @@
 // samewhere-train: trains the network that describes a view. `samewhere train` starts it.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -31,11 +32,17 @@ constexpr const char* kExamples =
     "  samewhere train --images photos twin:hotel?seed=7 --out models/mine.onnx\n"
     "  samewhere train --images gallery.txt --validate twin:hotel?seed=8 --out mine.onnx\n"
     "  samewhere train --images gallery.txt --out small.onnx --code-size 280 --epochs 20\n"
-    "  samewhere train --images photos --out pixels.onnx --target pixels --warp off\n"
+    "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
     "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
 
-// One option for each setting, named by it: learning_rate is --learning-rate. What was given is
+// The option of a setting: of learning_rate --learning-rate.
+std::string option_of(std::string setting) {
+  std::replace(setting.begin(), setting.end(), '_', '-');
+  return "--" + setting;
+}
+
+// One option for each setting, named by it. What was given is
 // kept as text, so that the settings' own reader checks it.
 class OptionMaker : public core::FieldVisitor {
  public:
@@ -44,7 +51,7 @@ class OptionMaker : public core::FieldVisitor {
 
  protected:
   void value(std::string_view name, bool& field, const core::FieldInfo& info) override {
-    add(name, field ? "on" : "off", info);
+    add(name, field ? "true" : "false", info);
   }
   void value(std::string_view name, int& field, const core::FieldInfo& info) override {
     add(name, std::to_string(field), info);
@@ -63,16 +70,13 @@ class OptionMaker : public core::FieldVisitor {
 
  private:
   void add(std::string_view name, const std::string& usual, const core::FieldInfo& info) {
-    std::string option = "--" + std::string(name);
-    for (char& c : option) {
-      if (c == '_') c = '-';
-    }
     const std::string choices =
         info.choices.empty() ? "" : fmt::format(" ({})", fmt::join(info.choices, ", "));
     const auto keep = [&given = given_, key = std::string(name)](const std::string& text) {
       given[key] = text;
     };
-    app_.add_option_function<std::string>(option, keep, std::string(info.help) + choices)
+    app_.add_option_function<std::string>(option_of(std::string(name)), keep,
+                                          std::string(info.help) + choices)
         ->default_str(usual);
   }
 
@@ -198,7 +202,9 @@ int run(int argc, char** argv) {
     return core::complain("samewhere", std::string(error.what()) + " (see samewhere train --help)",
                           core::kBadInput);
   }
-  for (const auto& [key, text] : given) core::set_config(job.config, key + "=" + text);
+  for (const auto& [key, text] : given) {
+    core::set_config(job.config, key + "=" + text, option_of(key) + " " + text);
+  }
   core::catch_interrupts();
   use_threads(job.config.threads);
   return train(job);

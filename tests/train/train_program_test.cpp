@@ -1,6 +1,7 @@
 // `samewhere train` as a user runs it.
 
 #include <algorithm>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -87,12 +88,34 @@ TEST_F(TrainProgram, BadInputEndsWithOneClearLine) {
   folder_.write("there.onnx", "");
   expect_clear_error(to("there.onnx"), {"there.onnx", "free"});
   expect_clear_error(to("x.onnx") + "--input-size 100x100", {"100x100", "120x160"});
+  expect_clear_error(to("x.onnx") + "--warp off", {"warp = off", "true, false", "(--warp off)"});
   expect_clear_error("train --out x.onnx", {"--images"});
   const std::string small = "train --images " + quoted(path("photos")) + " --out " +
                             quoted(path("x.onnx")) + " --epochs 1 --code-size ";
   expect_clear_error(small + "1000", {"code_size = 1000", "980 or 1015"});
   expect_clear_error(small + "many", {"code_size = many"});
   EXPECT_FALSE(std::filesystem::exists(path("x.onnx")));
+}
+
+// Where there are no such images, that is all that is wrong with them.
+TEST_F(TrainProgram, EachExampleOfTheHelpIsACommand) {
+  std::istringstream help(run("train --help").out);
+  const std::string start = "  samewhere ";
+  int num_examples = 0;
+  for (std::string line; std::getline(help, line);) {
+    if (line.rfind(start + "train --images", 0) != 0) continue;
+    ++num_examples;
+    SCOPED_TRACE(line);
+    std::string arguments = line.substr(start.size());
+    const auto at = [&](const std::string& option) {
+      return arguments.find(option) + option.size();
+    };
+    const std::string images =
+        arguments.substr(at("--images "), arguments.find(' ', at("--images ")) - at("--images "));
+    arguments.insert(at("--out "), path("out").string() + "/");
+    expect_clear_error(arguments, {images});
+  }
+  EXPECT_GE(num_examples, 3);
 }
 
 TEST_F(TrainProgram, HelpShowsExamples) {
