@@ -156,10 +156,14 @@ int train(const Job& job) {
   check_out(job.out);
   const ImageSet images = read(job);
   if (core::is_interrupted()) return core::kInterruptedExit;
-  Trainer trainer(job.config, images, checkpoint_of(job.out));
+  Trainer trainer(job.config, images, checkpoint_of(job.out), kCommit);
   fmt::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
              trainer.split().validation.size());
   if (!trainer.history().empty()) fmt::print("going on after epoch {}\n", trainer.history().size());
+  if (trainer.commits().size() > 1) {
+    spdlog::warn("begun by another program: trained by the commits {}",
+                 fmt::join(trainer.commits(), ", "));
+  }
   while (!trainer.is_done()) {
     if (core::is_interrupted() || !run_epoch(trainer, job.config.epochs))
       return interrupted(trainer);
@@ -183,7 +187,7 @@ void use_threads(int num_threads) {
 
 int run(int argc, char** argv) {
   CLI::App app("Train the network that describes a view, and export it to ONNX", "samewhere train");
-  Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION, .commit = kCommit};
+  Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION};
   app.add_option("--images", job.images,
                  "recordings, folders of images, lists of images, twin:PRESET?seed=3")
       ->required();

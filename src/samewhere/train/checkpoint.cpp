@@ -41,7 +41,9 @@ std::vector<float> numbers_of(std::string_view bytes) {
 
 Checkpoint from_header(const json& header) {
   Checkpoint checkpoint{.settings = header.at("settings"),
-                        .images_sha256 = header.at("images_sha256")};
+                        .network = header.at("network"),
+                        .images_sha256 = header.at("images_sha256"),
+                        .commits = header.at("commits")};
   for (const json& row : header.at("history")) {
     checkpoint.history.push_back({row.at(0), row.at(1), row.at(2)});
   }
@@ -60,6 +62,8 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   }
   const json header = {{"format", kFormat},
                        {"settings", checkpoint.settings},
+                       {"network", checkpoint.network},
+                       {"commits", checkpoint.commits},
                        {"images_sha256", checkpoint.images_sha256},
                        {"history", history},
                        {"num_autoencoder_bytes", checkpoint.autoencoder.size()},

@@ -19,7 +19,9 @@ struct EpochFigures {
 // epoch and image, so that `history` stands for their state too.
 struct Checkpoint {
   std::string settings;  // YAML; a training with others is another training
+  std::string network;   // its layers, for a person; with others the rest would not fit
   std::string images_sha256;
+  std::vector<std::string> commits;  // of the programs that trained, one after the other
   std::vector<EpochFigures> history;
   std::string autoencoder;             // Autoencoder::state() after the last epoch
   std::vector<float> best_parameters;  // of the encoder with the least validation error

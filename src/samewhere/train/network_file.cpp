@@ -88,7 +88,7 @@ std::string card_text(const Job& job, const ImageSet& images, const Trainer& tra
                      {"num_bytes", bytes.size()},
                      {"command", job.command},
                      {"version", job.version},
-                     {"commit", job.commit},
+                     {"commits", trainer.commits()},
                      {"settings", settings_as_json(job.config)},
                      {"images", images_as_json(images, trainer.split())},
                      {"input",

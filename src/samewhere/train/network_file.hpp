@@ -17,8 +17,7 @@ struct Job {
   std::filesystem::path out;          // *.onnx
   Config config;
   std::string command;  // as it was typed, for the card
-  std::string version;  // of the program, and the commit it was built from
-  std::string commit;
+  std::string version;  // of the program
 };
 
 // Files beside the network: what the training goes on from, and what tells how it came about.

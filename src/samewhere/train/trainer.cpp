@@ -46,6 +46,16 @@ std::string settings_text(Config config) {
   return core::config_as_yaml(config);
 }
 
+// Outputs x inputs x side of each kernel, its stride and padding.
+std::string layers_text(const NetworkPlan& plan) {
+  std::string text = fmt::format("input {}x{}, ", plan.input_px.height, plan.input_px.width);
+  for (const ConvolutionPlan& layer : plan.convolutions) {
+    text += fmt::format("{}x{}x{} stride {} padding {}, ", layer.num_outputs, layer.num_inputs,
+                        layer.kernel_px, layer.stride_px, layer.padding_px);
+  }
+  return text + fmt::format("code {}, target {}", plan.code_size, plan.target_size);
+}
+
 // One setting a line.
 void check_settings(const std::filesystem::path& checkpoint, const std::string& found,
                     const std::string& expected) {
@@ -64,21 +74,31 @@ void check_settings(const std::filesystem::path& checkpoint, const std::string& 
 
 }  // namespace
 
-Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint)
+Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint,
+                 const std::string& commit)
     : config_(config),
       checkpoint_path_(std::move(checkpoint)),
       plan_(plan_network(config)),
       split_(split_views(images, seed_of(config))),
       examples_(config, images.views,
                 scale_of_targets(images.views, split_.training, config.target)),
-      state_{.settings = settings_text(config), .images_sha256 = images.sha256},
+      state_{.settings = settings_text(config),
+             .network = layers_text(plan_),
+             .images_sha256 = images.sha256,
+             .commits = {commit}},
       autoencoder_(plan_, seed_of(config)) {
-  if (std::filesystem::exists(checkpoint_path_)) resume();
+  if (std::filesystem::exists(checkpoint_path_)) resume(commit);
 }
 
-void Trainer::resume() {
+void Trainer::resume(const std::string& commit) {
   Checkpoint found = read_checkpoint(checkpoint_path_);
   check_settings(checkpoint_path_, found.settings, state_.settings);
+  if (found.network != state_.network) {
+    throw InputError(fmt::format(
+        "{}: was made by commit {} with another network ({}), this program has {}; go on with that "
+        "one, or remove it to begin anew",
+        checkpoint_path_.string(), fmt::join(found.commits, ", "), found.network, state_.network));
+  }
   if (found.images_sha256 != state_.images_sha256) {
     throw InputError(checkpoint_path_.string() +
                      ": was made with other images; give the same --images, or remove it to begin "
@@ -86,6 +106,7 @@ void Trainer::resume() {
   }
   autoencoder_.restore(found.autoencoder);
   state_ = std::move(found);
+  if (state_.commits.back() != commit) state_.commits.push_back(commit);
 }
 
 EpochFigures Trainer::best_epoch() const {

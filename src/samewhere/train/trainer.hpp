@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <samewhere/train/autoencoder.hpp>
@@ -18,12 +19,16 @@ namespace samewhere::train {
 class Trainer {
  public:
   // Goes on from the checkpoint if there is one. Throws InputError if it belongs to other settings
-  // (naming the first) or other images. `images` must outlive the trainer.
-  Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint);
+  // (naming the first), another network or other images. `commit` is that of the running program.
+  // `images` must outlive the trainer.
+  Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint,
+          const std::string& commit);
 
   const NetworkPlan& plan() const { return plan_; }
   const Split& split() const { return split_; }
   const std::vector<EpochFigures>& history() const { return state_.history; }
+  // Of the programs that had a part in it, each once where it took over. Two may train differently.
+  const std::vector<std::string>& commits() const { return state_.commits; }
   bool is_done() const;
   // As the last epoch left it.
   Autoencoder& autoencoder() { return autoencoder_; }
@@ -44,7 +49,7 @@ class Trainer {
   std::span<const float> best_codes() const { return state_.best_codes; }
 
  private:
-  void resume();
+  void resume(const std::string& commit);
   double learning_rate(int epoch) const;
   std::vector<std::vector<int>> training_batches(int epoch) const;
   void require_finite(double error, int epoch) const;

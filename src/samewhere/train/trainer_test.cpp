@@ -33,13 +33,13 @@ class Training : public testing::Test {
 };
 
 TEST_F(Training, StoppedAfterTwoEpochsAndResumedIsTheSameToTheLastBit) {
-  Trainer whole(test_config(), images_, path("whole"));
+  Trainer whole(test_config(), images_, path("whole"), "abc");
   run_epochs(whole, 4);
   {
-    Trainer first(test_config(), images_, path("parts"));
+    Trainer first(test_config(), images_, path("parts"), "abc");
     run_epochs(first, 2);
   }
-  Trainer second(test_config(), images_, path("parts"));
+  Trainer second(test_config(), images_, path("parts"), "abc");
   ASSERT_EQ(second.history().size(), 2U);
   run_epochs(second, 2);
   EXPECT_TRUE(second.is_done());
@@ -51,27 +51,50 @@ TEST_F(Training, StoppedAfterTwoEpochsAndResumedIsTheSameToTheLastBit) {
 
 TEST_F(Training, GoesOnWithTheSameSettingsAndImagesOnly) {
   {
-    Trainer first(test_config(), images_, path("checkpoint"));
+    Trainer first(test_config(), images_, path("checkpoint"), "abc");
     run_epochs(first, 1);
   }
   Config other = test_config();
   other.batch = 8;
-  const auto refused = complaint([&] { Trainer(other, images_, path("checkpoint")); });
+  const auto refused = complaint([&] { Trainer(other, images_, path("checkpoint"), "abc"); });
   EXPECT_THAT(refused, HasSubstr("checkpoint"));
   EXPECT_THAT(refused, HasSubstr("batch: 4"));
   EXPECT_THAT(refused, HasSubstr("batch: 8"));
   ImageSet others = images_;
   others.sha256 = "of others";
-  EXPECT_THAT(complaint([&] { Trainer(test_config(), others, path("checkpoint")); }),
+  EXPECT_THAT(complaint([&] { Trainer(test_config(), others, path("checkpoint"), "abc"); }),
               HasSubstr("other images"));
   other = test_config();
   other.threads = 2;
-  EXPECT_EQ(complaint([&] { Trainer(other, images_, path("checkpoint")); }), "no error");
+  EXPECT_EQ(complaint([&] { Trainer(other, images_, path("checkpoint"), "abc"); }), "no error");
+}
+
+TEST_F(Training, EachProgramThatHadAPartIsNamed) {
+  for (const std::string commit : {"abc", "abc", "def"}) {
+    Trainer trainer(test_config(), images_, path("checkpoint"), commit);
+    run_epochs(trainer, 1);
+  }
+  Trainer trainer(test_config(), images_, path("checkpoint"), "def");
+  EXPECT_THAT(trainer.commits(), testing::ElementsAre("abc", "def"));
+}
+
+TEST_F(Training, DoesNotGoOnWithAnotherNetwork) {
+  {
+    Trainer first(test_config(), images_, path("checkpoint"), "abc");
+    run_epochs(first, 1);
+  }
+  Checkpoint other = read_checkpoint(path("checkpoint"));
+  other.network = "four layers";
+  write_checkpoint(path("checkpoint"), other);
+  const auto refused =
+      complaint([&] { Trainer(test_config(), images_, path("checkpoint"), "def"); });
+  EXPECT_THAT(refused, testing::AllOf(HasSubstr("checkpoint"), HasSubstr("abc"),
+                                      HasSubstr("four layers"), HasSubstr("input 120x160")));
 }
 
 TEST_F(Training, ADamagedCheckpointIsRefused) {
   {
-    Trainer first(test_config(), images_, path("checkpoint"));
+    Trainer first(test_config(), images_, path("checkpoint"), "abc");
     run_epochs(first, 1);
   }
   std::string bytes = core::read_file(path("checkpoint"));
@@ -80,13 +103,14 @@ TEST_F(Training, ADamagedCheckpointIsRefused) {
   folder_.cut("checkpoint", 0.7);
   folder_.write("foreign", "a shopping list");
   for (const std::string name : {"checkpoint", "flipped", "foreign"}) {
-    EXPECT_THAT(complaint([&] { Trainer(test_config(), images_, path(name)); }), HasSubstr(name));
+    EXPECT_THAT(complaint([&] { Trainer(test_config(), images_, path(name), "abc"); }),
+                HasSubstr(name));
   }
 }
 
 // A limit on the size of files stands for a full disk.
 TEST_F(Training, OnAFullDiskTheLastCheckpointSurvives) {
-  Trainer trainer(test_config(), images_, path("checkpoint"));
+  Trainer trainer(test_config(), images_, path("checkpoint"), "abc");
   run_epochs(trainer, 1);
   const std::string last = core::read_file(path("checkpoint"));
   std::signal(SIGXFSZ, SIG_IGN);
@@ -106,7 +130,7 @@ TEST_F(Training, EndsWhenValidationGetsNoBetter) {
   config.epochs = 50;
   config.patience = 2;
   config.learning_rate = 1.0;  // far too much: it jumps about
-  Trainer trainer(config, images_, path("checkpoint"));
+  Trainer trainer(config, images_, path("checkpoint"), "abc");
   while (!trainer.is_done()) run_epochs(trainer, 1);
   EXPECT_LT(trainer.history().size(), 50U);
   EXPECT_EQ(static_cast<int>(trainer.history().size()), trainer.best_epoch().epoch + 2);
@@ -118,7 +142,7 @@ TEST_F(Training, ARuinedNetworkReachesNeitherCheckpointNorChoice) {
   Config config = test_config();
   config.batch = 1024;
   config.learning_rate = 1e30;
-  Trainer trainer(config, images_, path("checkpoint"));
+  Trainer trainer(config, images_, path("checkpoint"), "abc");
   EXPECT_THAT(complaint([&] { trainer.run_epoch([](int, int) {}); }),
               testing::AllOf(HasSubstr("learning_rate"), HasSubstr("epoch 1")));
   EXPECT_TRUE(trainer.history().empty());
@@ -130,9 +154,8 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
                 .out = path("small.onnx"),
                 .config = test_config(),
                 .command = "samewhere train",
-                .version = "0",
-                .commit = "abc"};
-  Trainer trainer(job.config, images_, checkpoint_of(job.out));
+                .version = "0"};
+  Trainer trainer(job.config, images_, checkpoint_of(job.out), "abc");
   run_epochs(trainer, 4);
   const Quality quality = write_network(job, images_, trainer);
   EXPECT_FALSE(std::filesystem::exists(checkpoint_of(job.out)));
@@ -145,7 +168,7 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   EXPECT_EQ(card["images"]["sources"][0]["num_images"], 24);
   EXPECT_EQ(card["images"]["validation_sources"], "blocks of the sources");
   EXPECT_EQ(card["epochs"].size(), 4U);
-  EXPECT_EQ(card["commit"], "abc");
+  EXPECT_THAT(card["commits"], testing::ElementsAre("abc"));
   const auto inference = describe::make_inference(describe::read_network(job.out));
   EXPECT_LE(export_error(*inference, trainer.checked_inputs(), trainer.best_codes()), 1e-5);
 }
@@ -153,7 +176,7 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
 TEST_F(Training, TheCardNamesTheSourcesToValidateWith) {
   images_.sources = {{"pictures", 20}, {"other pictures", 4, 1, true}};
   const Job job{.out = path("small.onnx"), .config = test_config()};
-  Trainer trainer(job.config, images_, checkpoint_of(job.out));
+  Trainer trainer(job.config, images_, checkpoint_of(job.out), "abc");
   run_epochs(trainer, 1);
   write_network(job, images_, trainer);
   const auto card = nlohmann::json::parse(core::read_file(card_of(job.out)));
@@ -172,7 +195,7 @@ TEST_F(Training, WritesTheNetworkThatWasBestOrNone) {
   const Job job{.images = {"pictures"}, .out = path("jumpy.onnx"), .config = config};
   const auto checkpoint = checkpoint_of(job.out);
   {
-    Trainer trainer(config, images_, checkpoint);
+    Trainer trainer(config, images_, checkpoint, "abc");
     while (!trainer.is_done()) run_epochs(trainer, 1);
     ASSERT_NE(parameters_of(trainer.best_encoder()),
               parameters_of(trainer.autoencoder().encoder()));
@@ -182,7 +205,7 @@ TEST_F(Training, WritesTheNetworkThatWasBestOrNone) {
     Checkpoint changed = good;
     change(changed);
     write_checkpoint(checkpoint, changed);
-    Trainer trainer(config, images_, checkpoint);
+    Trainer trainer(config, images_, checkpoint, "abc");
     write_network(job, images_, trainer);
   };
   EXPECT_THROW(write_after([](Checkpoint& c) { c.best_parameters[0] += 0.01F; }),
