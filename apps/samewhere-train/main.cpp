@@ -100,10 +100,7 @@ void check_out(const std::filesystem::path& out) {
     throw core::InputError(
         fmt::format("--out {}: expected a file name that ends in .onnx", out.string()));
   }
-  if (std::filesystem::exists(out) && !std::filesystem::exists(checkpoint_of(out))) {
-    throw core::InputError(
-        fmt::format("--out {}: is there already, expected a name that is free", out.string()));
-  }
+  require_free(out);
   core::make_writable_folder(std::filesystem::absolute(out).parent_path());
 }
 

@@ -85,6 +85,7 @@ TEST_F(TrainProgram, BadInputEndsWithOneClearLine) {
   expect_clear_error(to("x.network"), {"x.network", ".onnx"});
   folder_.write("file", "");
   expect_clear_error(to("file/x.onnx"), {"file"});
+  expect_clear_error(to(std::string(300, 'a') + ".onnx"), {"aaa", "name too long"});
   folder_.write("there.onnx", "");
   expect_clear_error(to("there.onnx"), {"there.onnx", "free"});
   expect_clear_error(to("x.onnx") + "--input-size 100x100", {"100x100", "120x160"});

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstring>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -103,6 +104,15 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   } catch (const json::exception&) {
     fail(path, "holds something else than its checksum says");
   }
+}
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code error;
+  const bool is_there = std::filesystem::exists(path, error);
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be looked up: {}", path.string(), error.message()));
+  }
+  return is_there;
 }
 
 std::vector<float> parameters_of(const Encoder& encoder) {

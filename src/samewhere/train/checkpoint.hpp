@@ -33,6 +33,10 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 // Throws InputError if the file is no checkpoint or damaged.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
+// Whether there is something of that name. Throws InputError where the system cannot say: a name
+// too long, a folder that may not be looked into.
+bool is_there(const std::filesystem::path& path);
+
 // All weights and biases of an encoder in a row; and back into one of the same plan.
 std::vector<float> parameters_of(const Encoder& encoder);
 Encoder encoder_with(const NetworkPlan& plan, const std::vector<float>& parameters);

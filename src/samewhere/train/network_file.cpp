@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -149,6 +150,16 @@ std::filesystem::path card_of(const std::filesystem::path& network) {
   return beside(network, ".json");
 }
 
+void require_free(const std::filesystem::path& network) {
+  if (is_there(checkpoint_of(network))) return;
+  for (const std::filesystem::path& path : {network, card_of(network)}) {
+    if (!is_there(path)) continue;
+    throw core::InputError(
+        fmt::format("--out {}: {} is there already, expected a name that is free", network.string(),
+                    path.string()));
+  }
+}
+
 double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
                     std::span<const float> trained_codes) {
   core::require(!inputs.empty() && trained_codes.size() % inputs.size() == 0,
@@ -180,7 +191,8 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer) 
       .recognition_of_hog = recognition(images, split, job.config, hog_of_input)};
   core::write_file(job.out, bytes);
   core::write_file(card_of(job.out), card_text(job, images, trainer, quality, bytes));
-  std::filesystem::remove(checkpoint_of(job.out));
+  std::error_code ignored;  // what stays does no harm
+  std::filesystem::remove(checkpoint_of(job.out), ignored);
   return quality;
 }
 

@@ -24,6 +24,10 @@ struct Job {
 std::filesystem::path checkpoint_of(const std::filesystem::path& network);
 std::filesystem::path card_of(const std::filesystem::path& network);
 
+// Throws InputError if the network or its card is there already, unless the checkpoint of a
+// training is, too, or if the system cannot say.
+void require_free(const std::filesystem::path& network);
+
 // What the finished network does on the validation views.
 struct Quality {
   EpochFigures best;

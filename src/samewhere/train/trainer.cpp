@@ -87,7 +87,7 @@ Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::
              .images_sha256 = images.sha256,
              .commits = {commit}},
       autoencoder_(plan_, seed_of(config)) {
-  if (std::filesystem::exists(checkpoint_path_)) resume(commit);
+  if (is_there(checkpoint_path_)) resume(commit);
 }
 
 void Trainer::resume(const std::string& commit) {

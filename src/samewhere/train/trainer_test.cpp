@@ -180,6 +180,18 @@ TEST_F(Training, TheCardNamesTheSourcesToValidateWith) {
   EXPECT_EQ(card["images"]["num_validation"], 4);
 }
 
+TEST_F(Training, AFileOfTheSameNameIsNotOverwritten) {
+  EXPECT_EQ(complaint([&] { require_free(path("mine.onnx")); }), "no error");
+  for (const std::string name : {"mine.onnx", "mine.json"}) {
+    folder_.write(name, "");
+    EXPECT_THAT(complaint([&] { require_free(path("mine.onnx")); }),
+                testing::AllOf(HasSubstr("--out"), HasSubstr(name + " is there already")));
+    if (name == "mine.onnx") std::filesystem::remove(path(name));
+  }
+  folder_.write("mine.checkpoint", "");
+  EXPECT_EQ(complaint([&] { require_free(path("mine.onnx")); }), "no error") << "goes on";
+}
+
 // The training goes on past its best epoch, so that network and last network differ.
 TEST_F(Training, WritesTheNetworkThatWasBestOrNone) {
   Config config = test_config();
