@@ -1,12 +1,17 @@
 #include <cmath>
 #include <csignal>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/similarity.hpp>
+#include <samewhere/describe/describer.hpp>
+#include <samewhere/input/image_file.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/train/network_file.hpp>
 #include <samewhere/train/sha256.hpp>
@@ -165,6 +170,35 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   EXPECT_THAT(card["commits"], testing::ElementsAre("abc"));
   const auto inference = describe::make_inference(describe::read_network(job.out));
   EXPECT_LE(export_error(*inference, trainer.checked_inputs(), trainer.best_codes()), 1e-5);
+}
+
+// From the file of a photo both ways: as a view to learn from, and as a user has it described.
+TEST_F(Training, SeesAViewAsTheNetworkSeesItInUse) {
+  for (const InputSize size : {InputSize::k120x160, InputSize::k360x480}) {
+    Config config = test_config();
+    config.input_size = size;
+    const Job job{.out = path(fmt::format("{}.onnx", input_size_px(size).width)), .config = config};
+    for (int i = 0; i < 6; ++i) {
+      cv::Mat coloured;
+      cv::cvtColor(test_picture(i, {640, 480}), coloured, cv::COLOR_GRAY2BGR);
+      cv::GaussianBlur(coloured, coloured, {}, 1.5);  // as a lens does
+      folder_.write_png(fmt::format("photos/{}.png", i), coloured);
+    }
+    const std::vector<std::string> sources = {path("photos").string()};
+    const ImageSet images = read_images(sources, {}, config, [](const std::string&, int, int) {});
+    Trainer trainer(config, images, checkpoint_of(job.out), "abc");
+    run_epochs(trainer, 1);
+    write_network(job, images, trainer);
+    const auto describer = describe::make_describer(
+        {.method = describe::Method::kAutoencoder, .network = job.out.string()});
+    for (int i = 0; i < 6; ++i) {
+      const cv::Mat input = encoder_input(images.views[static_cast<std::size_t>(i)], size);
+      const auto code = trainer.autoencoder().encode({input.ptr<float>(), input.total()});
+      const cv::Mat photo = input::read_image(path(fmt::format("photos/{}.png", i)));
+      const auto described = describer->describe(core::FrameId(0), photo);
+      EXPECT_GT(core::cosine(described.unit, code), 1.0 - 1e-4) << job.out << ", photo " << i;
+    }
+  }
 }
 
 TEST_F(Training, TheCardNamesTheSourcesToValidateWith) {
