@@ -42,8 +42,8 @@ std::string option_of(std::string setting) {
   return "--" + setting;
 }
 
-// One option for each setting, named by it. What was given is
-// kept as text, so that the settings' own reader checks it.
+// One option for each setting, named by it. What was given is kept as text, so that the settings'
+// own reader checks it.
 class OptionMaker : public core::FieldVisitor {
  public:
   OptionMaker(CLI::App& app, std::map<std::string, std::string>& given)
