@@ -94,8 +94,10 @@ std::string as_typed(int argc, char** argv) {
   return command;
 }
 
-// What would be found out only after hours.
-void check_out(const std::filesystem::path& out) {
+// What would be found out only after all images are read, or after hours.
+void check(const Job& job) {
+  plan_network(job.config);  // throws where no layers fit
+  const std::filesystem::path& out = job.out;
   if (out.extension() != ".onnx") {
     throw core::InputError(
         fmt::format("--out {}: expected a file name that ends in .onnx", out.string()));
@@ -150,7 +152,7 @@ int interrupted(const Trainer& trainer) {
 }
 
 int train(const Job& job) {
-  check_out(job.out);
+  check(job);
   const ImageSet images = read(job);
   if (core::is_interrupted()) return core::kInterruptedExit;
   Trainer trainer(job.config, images, checkpoint_of(job.out), kCommit);
