@@ -1,5 +1,6 @@
 // samewhere-train: trains the network that describes a view. `samewhere train` starts it.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -29,13 +30,20 @@ namespace {
 constexpr const char* kExamples =
     "Examples:\n"
     "  samewhere train --images photos twin:hotel?seed=7 --out models/mine.onnx\n"
+    "  samewhere train --images gallery.txt --validate twin:hotel?seed=8 --out mine.onnx\n"
     "  samewhere train --images gallery.txt --out small.onnx --code-size 280 --epochs 20\n"
-    "  samewhere train --images photos --out pixels.onnx --target pixels --warp off\n"
+    "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
     "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
 
-// One option for each setting, named by it: learning_rate is --learning-rate. What was given is
-// kept as text, so that the settings' own reader checks it.
+// The option of a setting: of learning_rate --learning-rate.
+std::string option_of(std::string setting) {
+  std::replace(setting.begin(), setting.end(), '_', '-');
+  return "--" + setting;
+}
+
+// One option for each setting, named by it. What was given is kept as text, so that the settings'
+// own reader checks it.
 class OptionMaker : public core::FieldVisitor {
  public:
   OptionMaker(CLI::App& app, std::map<std::string, std::string>& given)
@@ -43,7 +51,7 @@ class OptionMaker : public core::FieldVisitor {
 
  protected:
   void value(std::string_view name, bool& field, const core::FieldInfo& info) override {
-    add(name, field ? "on" : "off", info);
+    add(name, field ? "true" : "false", info);
   }
   void value(std::string_view name, int& field, const core::FieldInfo& info) override {
     add(name, std::to_string(field), info);
@@ -62,16 +70,13 @@ class OptionMaker : public core::FieldVisitor {
 
  private:
   void add(std::string_view name, const std::string& usual, const core::FieldInfo& info) {
-    std::string option = "--" + std::string(name);
-    for (char& c : option) {
-      if (c == '_') c = '-';
-    }
     const std::string choices =
         info.choices.empty() ? "" : fmt::format(" ({})", fmt::join(info.choices, ", "));
     const auto keep = [&given = given_, key = std::string(name)](const std::string& text) {
       given[key] = text;
     };
-    app_.add_option_function<std::string>(option, keep, std::string(info.help) + choices)
+    app_.add_option_function<std::string>(option_of(std::string(name)), keep,
+                                          std::string(info.help) + choices)
         ->default_str(usual);
   }
 
@@ -89,28 +94,28 @@ std::string as_typed(int argc, char** argv) {
   return command;
 }
 
-// What would be found out only after hours.
-void check_out(const std::filesystem::path& out) {
+// What would be found out only after all images are read, or after hours.
+void check(const Job& job) {
+  plan_network(job.config);  // throws where no layers fit
+  const std::filesystem::path& out = job.out;
   if (out.extension() != ".onnx") {
     throw core::InputError(
         fmt::format("--out {}: expected a file name that ends in .onnx", out.string()));
   }
-  if (std::filesystem::exists(out) && !std::filesystem::exists(checkpoint_of(out))) {
-    throw core::InputError(
-        fmt::format("--out {}: is there already, expected a name that is free", out.string()));
-  }
+  require_free(out);
   core::make_writable_folder(std::filesystem::absolute(out).parent_path());
 }
 
 ImageSet read(const Job& job) {
   std::string current;
   std::optional<core::Progress> progress;
-  ImageSet images =
-      read_images(job.images, job.config, [&](const std::string& source, int done, int total) {
-        if (source != current) progress.emplace("reading " + source, total);
-        current = source;
-        progress->update(done);
-      });
+  ImageSet images = read_images(job.images, job.validate, job.config,
+                                [&](const std::string& source, int done, int total) {
+                                  if (source != current)
+                                    progress.emplace("reading " + source, total);
+                                  current = source;
+                                  progress->update(done);
+                                });
   progress.reset();
   for (const SourceCount& source : images.sources) {
     fmt::print("{}: {} images", source.source, source.num_images);
@@ -147,13 +152,17 @@ int interrupted(const Trainer& trainer) {
 }
 
 int train(const Job& job) {
-  check_out(job.out);
+  check(job);
   const ImageSet images = read(job);
   if (core::is_interrupted()) return core::kInterruptedExit;
-  Trainer trainer(job.config, images, checkpoint_of(job.out));
+  Trainer trainer(job.config, images, checkpoint_of(job.out), kCommit);
   fmt::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
              trainer.split().validation.size());
   if (!trainer.history().empty()) fmt::print("going on after epoch {}\n", trainer.history().size());
+  if (trainer.commits().size() > 1) {
+    spdlog::warn("begun by another program: trained by the commits {}",
+                 fmt::join(trainer.commits(), ", "));
+  }
   while (!trainer.is_done()) {
     if (core::is_interrupted() || !run_epoch(trainer, job.config.epochs))
       return interrupted(trainer);
@@ -177,10 +186,13 @@ void use_threads(int num_threads) {
 
 int run(int argc, char** argv) {
   CLI::App app("Train the network that describes a view, and export it to ONNX", "samewhere train");
-  Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION, .commit = kCommit};
+  Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION};
   app.add_option("--images", job.images,
                  "recordings, folders of images, lists of images, twin:PRESET?seed=3")
       ->required();
+  app.add_option("--validate", job.validate,
+                 "the same, of other places: only to tell how well it goes; without it, blocks of "
+                 "--images are held back for that");
   app.add_option("--out", job.out, "FILE.onnx, a name that is free")->required();
   std::map<std::string, std::string> given;
   OptionMaker make_options(app, given);
@@ -193,7 +205,9 @@ int run(int argc, char** argv) {
     return core::complain("samewhere", std::string(error.what()) + " (see samewhere train --help)",
                           core::kBadInput);
   }
-  for (const auto& [key, text] : given) core::set_config(job.config, key + "=" + text);
+  for (const auto& [key, text] : given) {
+    core::set_config(job.config, key + "=" + text, option_of(key) + " " + text);
+  }
   core::catch_interrupts();
   use_threads(job.config.threads);
   return train(job);

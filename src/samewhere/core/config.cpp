@@ -283,8 +283,8 @@ void read_fields(void* config, FieldWalk walk, const std::string& yaml, const st
   reader.finish();
 }
 
-void assign_field(void* config, FieldWalk walk, const std::string& assignment) {
-  const std::string origin = "--set " + assignment;
+void assign_field(void* config, FieldWalk walk, const std::string& assignment,
+                  const std::string& origin) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0 || assignment.front() == '.') {
     throw InputError(origin + ": expected section.key=value");

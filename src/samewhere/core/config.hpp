@@ -67,8 +67,10 @@ using FieldWalk = void (*)(void* config, FieldVisitor& visit);
 // key, value, `origin` (the file) and line on an unknown key, a value of the wrong type or outside
 // its range, or text that is no YAML.
 void read_fields(void* config, FieldWalk walk, const std::string& yaml, const std::string& origin);
-// `assignment` is "section.key=value". Throws InputError as read_fields.
-void assign_field(void* config, FieldWalk walk, const std::string& assignment);
+// `assignment` is "section.key=value", `origin` what the user typed. Throws InputError as
+// read_fields.
+void assign_field(void* config, FieldWalk walk, const std::string& assignment,
+                  const std::string& origin);
 std::string fields_as_yaml(void* config, FieldWalk walk, bool with_help);
 std::string fields_as_table(void* config, FieldWalk walk);
 
@@ -85,10 +87,16 @@ void read_config(Config& config, const std::string& yaml, const std::string& ori
 }
 
 template <class Config>
-void set_config(Config& config, const std::string& assignment) {
+void set_config(Config& config, const std::string& assignment, const std::string& origin) {
   Config changed = config;
-  assign_field(&changed, &walk_fields<Config>, assignment);
+  assign_field(&changed, &walk_fields<Config>, assignment, origin);
   config = changed;
+}
+
+// As an option --set gives it.
+template <class Config>
+void set_config(Config& config, const std::string& assignment) {
+  set_config(config, assignment, "--set " + assignment);
 }
 
 // YAML that read_config reads back to the same values; with_help adds meaning and range as

@@ -222,6 +222,16 @@ TEST(Config, ABadAssignmentIsToldAsItWasTyped) {
   EXPECT_THAT(set_error_of(""), HasSubstr("expected section.key=value"));
 }
 
+TEST(Config, AnOptionOfItsOwnIsNamedAsTheOrigin) {
+  Settings settings;
+  try {
+    set_config(settings, "seed=nine", "--seed nine");
+    FAIL() << "nine is no number";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "seed = nine is not a whole number  (--seed nine)");
+  }
+}
+
 TEST(Config, TheTableAndTheHelpNameEveryKeyRangeAndMeaning) {
   const std::string table = config_as_table(Settings{});
   EXPECT_THAT(table, HasSubstr("| `retrieve.min_similarity` | `0.6` | [-1, 1] | cosine |"));

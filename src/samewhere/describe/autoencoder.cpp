@@ -42,7 +42,7 @@ class Autoencoder : public Describer {
     if (is_of_one_level(prepared)) {
       return {frame, std::vector<float>(code_length_, 0.0F), checksum_};
     }
-    const std::vector<float> code = inference_->run(network_input(prepared));
+    const std::vector<float> code = inference_->run(network_input(prepared, input_px_));
     const auto broken =
         std::find_if_not(code.begin(), code.end(), [](float x) { return std::isfinite(x); });
     if (broken != code.end()) {
@@ -69,16 +69,6 @@ class Autoencoder : public Describer {
     code_length_ = inference_->run(cv::Mat(input_px_, CV_32FC1, cv::Scalar(0.5))).size();
   }
 
-  cv::Mat network_input(const cv::Mat& prepared) const {
-    const bool is_shrunk = input_px_.width <= prepared.cols && input_px_.height <= prepared.rows;
-    cv::Mat reduced;
-    cv::resize(prepared, reduced, input_px_, 0.0, 0.0,
-               is_shrunk ? cv::INTER_AREA : cv::INTER_LINEAR);
-    cv::Mat picture;
-    reduced.convertTo(picture, CV_32F, 1.0 / 255.0);
-    return picture;
-  }
-
   Config config_;
   std::filesystem::path path_;
   cv::Size input_px_;
@@ -88,6 +78,15 @@ class Autoencoder : public Describer {
 };
 
 }  // namespace
+
+cv::Mat network_input(const cv::Mat& prepared, cv::Size input_px) {
+  const bool is_shrunk = input_px.width <= prepared.cols && input_px.height <= prepared.rows;
+  cv::Mat reduced;
+  cv::resize(prepared, reduced, input_px, 0.0, 0.0, is_shrunk ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::Mat picture;
+  reduced.convertTo(picture, CV_32F, 1.0 / 255.0);
+  return picture;
+}
 
 std::unique_ptr<Describer> make_autoencoder(const Config& config) {
   return std::make_unique<Autoencoder>(config);

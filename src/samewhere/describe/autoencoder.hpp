@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include <opencv2/core/mat.hpp>
+
 #include <samewhere/describe/describer.hpp>
 
 namespace samewhere::describe {
@@ -13,5 +15,9 @@ namespace samewhere::describe {
 // Throws InputError as find_network, read_network and make_inference do, and if the network's
 // output is not 1xN.
 std::unique_ptr<Describer> make_autoencoder(const Config& config);
+
+// What a network is fed, in use and in training: a view as preprocess() gives it, reduced by
+// averaging over the area (enlarged linearly, if that is asked for) to 32-bit floats in [0, 1].
+cv::Mat network_input(const cv::Mat& prepared, cv::Size input_px);
 
 }  // namespace samewhere::describe

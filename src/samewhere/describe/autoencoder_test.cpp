@@ -158,6 +158,12 @@ TEST_F(Autoencoder, OfAFreeBatchSizeOneIsTaken) {
   EXPECT_EQ(complaint(onnx_file({.input = {-1, 1, 24, 32}})), "nothing");
 }
 
+TEST_F(Autoencoder, TheCodeIsTheOutputThatTheFileDeclaresNotItsLastLayer) {
+  const auto plain = make_describer(config_for(onnx_file({}), "plain.onnx"));
+  const auto longer = make_describer(config_for(onnx_file({.has_node_behind_code = true})));
+  EXPECT_EQ(longer->describe(kFrame, room(1)).unit, plain->describe(kFrame, room(1)).unit);
+}
+
 TEST_F(Autoencoder, AFileCutAnywhereIsRefused) {
   const std::string whole = onnx_file({.input = {1, 1, 8, 8}, .code_length = 2});
   // everywhere near both ends, and at places in between

@@ -59,7 +59,7 @@ class OpenCvInference : public Inference {
       const cv::Mat continuous = picture.isContinuous() ? picture : picture.clone();
       const std::vector<int> shape{1, 1, picture.rows, picture.cols};
       net_.setInput(continuous.reshape(1, shape), ends_.input_name);
-      return net_.forward();
+      return net_.forward(ends_.output_name);
     } catch (const std::exception& error) {
       fail("cannot run", error);
     }

@@ -211,7 +211,11 @@ std::filesystem::path find_network(const std::string& file) {
 }
 
 NetworkFile read_network(const std::filesystem::path& path) {
-  NetworkFile network{.path = path, .bytes = core::read_file(path)};
+  return parse_network(path, core::read_file(path));
+}
+
+NetworkFile parse_network(const std::filesystem::path& path, std::string bytes) {
+  NetworkFile network{.path = path, .bytes = std::move(bytes)};
   network.checksum = core::checksum(network.bytes);
   const GraphReader graph(network);
   const End input = graph.only_end(kGraphInput, "input");

@@ -27,6 +27,8 @@ std::filesystem::path find_network(const std::string& file);
 // and what was expected: if it is no ONNX file or cut short, or unless it has one input of floats
 // 1x1xHxW (H, W fixed; the first dimension may be free) and one output of floats.
 NetworkFile read_network(const std::filesystem::path& path);
+// The same of bytes that need not be in the file yet: `path` is what complaints name.
+NetworkFile parse_network(const std::filesystem::path& path, std::string bytes);
 
 // Throws InputError naming the network and the shape unless that is 1xN with N at least 2.
 void require_code_shape(const NetworkFile& network, const std::vector<std::int64_t>& output_shape);

@@ -72,6 +72,7 @@ struct TestNetwork {
   float bias = 0.0F;       // of the code
   std::uint64_t seed = 1;  // of the weights
   bool has_second_output = false;
+  bool has_node_behind_code = false;  // whose output the file does not declare
 };
 
 inline std::vector<float> random_weights(core::Random& random, int count, double size) {
@@ -99,6 +100,7 @@ inline std::string onnx_file(const TestNetwork& network) {
         bytes(1, node("Flatten", {"features"}, "row", number_attribute("axis", 1))) +
         bytes(1, node("Gemm", {"row", "matrix", "bias"}, "code", number_attribute("transB", 1)));
   }
+  if (network.has_node_behind_code) graph += bytes(1, node("Sigmoid", {"code"}, "behind"));
   graph += bytes(2, "test") +
            bytes(5, weights("kernel", kernel, random_weights(random, kernel_size, 0.2)));
   if (network.code_length > 0) {

@@ -1,9 +1,14 @@
+#include <algorithm>
+#include <limits>
+#include <memory>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/train/autoencoder.hpp>
 #include <samewhere/train/network_file.hpp>
+#include <samewhere/train/onnx_file.hpp>
 #include <samewhere/train/test_images.hpp>
 
 namespace samewhere::train {
@@ -14,6 +19,11 @@ Batch batch_of(const ImageSet& images, const Config& config, std::uint64_t seed)
   for (int i = 0; i < static_cast<int>(images.views.size()); ++i) all.push_back(i);
   return ExampleMaker(config, images.views, scale_of_targets(images.views, all, config.target))
       .batch(all, seed);
+}
+
+std::unique_ptr<describe::Inference> exported(const Autoencoder& autoencoder) {
+  return describe::make_inference(
+      describe::parse_network("exported", onnx_bytes(autoencoder.encoder(), "")));
 }
 
 TEST(NetworkPlan, ACodeThatNoLayerGivesIsRefused) {
@@ -34,11 +44,28 @@ TEST(Autoencoder, ExportsWhatItHasLearnt) {
     // the statistics of the normalisation leave their first values
     for (std::uint64_t i = 0; i < 5; ++i) autoencoder.learn(batch_of(images, config, i), 1e-2);
     const cv::Mat input = encoder_input(images.views[0], size);
-    EXPECT_EQ(autoencoder.encode({input.ptr<float>(), input.total()}).size(), 525U);
-    const double error = export_error(autoencoder, images, config);
+    const std::vector<float> code = autoencoder.encode({input.ptr<float>(), input.total()});
+    EXPECT_EQ(code.size(), 525U);
+    const double error = export_error(*exported(autoencoder), {&input, 1}, code);
     EXPECT_LT(error, 1e-5);
     EXPECT_GT(error, 0.0) << "two different implementations were compared";
   }
+}
+
+TEST(Autoencoder, AnExportThatDiffersOrIsNoNumberShows) {
+  set_num_threads(1);
+  const cv::Mat input = encoder_input(test_picture(1), InputSize::k120x160);
+  Autoencoder autoencoder(plan_network(test_config()), 1);
+  const auto inference = exported(autoencoder);
+  std::vector<float> code = autoencoder.encode({input.ptr<float>(), input.total()});
+  ASSERT_LT(export_error(*inference, {&input, 1}, code), 1e-5);
+  const float largest = *std::max_element(code.begin(), code.end());
+  code[7] += 1e-3F * largest;
+  EXPECT_NEAR(export_error(*inference, {&input, 1}, code), 1e-3, 1e-5);
+  code[7] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(export_error(*inference, {&input, 1}, code) <= 1e-5);
+  std::fill(code.begin(), code.end(), 0.0F);
+  EXPECT_FALSE(export_error(*inference, {&input, 1}, code) <= 1e-5);
 }
 
 TEST(Autoencoder, LearnsAndRestoredGoesOnWithTheSameBits) {

@@ -19,16 +19,23 @@ struct EpochFigures {
 // epoch and image, so that `history` stands for their state too.
 struct Checkpoint {
   std::string settings;  // YAML; a training with others is another training
+  std::string network;   // its layers, for a person; with others the rest would not fit
   std::string images_sha256;
+  std::vector<std::string> commits;  // of the programs that trained, one after the other
   std::vector<EpochFigures> history;
   std::string autoencoder;             // Autoencoder::state() after the last epoch
   std::vector<float> best_parameters;  // of the encoder with the least validation error
+  std::vector<float> best_codes;       // its codes of a few views, one after the other
 };
 
 // Writes the whole file or nothing. Throws InputError: no space, no permission.
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
 // Throws InputError if the file is no checkpoint or damaged.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
+
+// Whether there is something of that name. Throws InputError where the system cannot say: a name
+// too long, a folder that may not be looked into.
+bool is_there(const std::filesystem::path& path);
 
 // All weights and biases of an encoder in a row; and back into one of the same plan.
 std::vector<float> parameters_of(const Encoder& encoder);

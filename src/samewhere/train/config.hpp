@@ -52,7 +52,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "what is reconstructed: HOG of the undistorted view, or its pixels",
          .choices = {"hog", "pixels"}});
   visit("warp", config.warp,
-        {.help = "on: the input is seen from another viewpoint; off: it is not"});
+        {.help = "true: the input is seen from another viewpoint; false: it is not"});
   visit("twin_step", config.twin_step,
         {.help = "of a rendered walk (15 frames a second) every so many frames", .min = 1});
 }

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/describe/autoencoder.hpp>
 #include <samewhere/describe/config.hpp>
 #include <samewhere/describe/hog.hpp>
 #include <samewhere/train/examples.hpp>
@@ -91,9 +92,7 @@ int target_length(Target target) {
 
 cv::Mat encoder_input(const cv::Mat& view, InputSize size) {
   core::require(view.type() == CV_8UC1, "a view to encode is 8-bit grey");
-  cv::Mat input;
-  reduced(view, input_size_px(size)).convertTo(input, CV_32F, 1.0 / 255.0);
-  return input;
+  return describe::network_input(view, input_size_px(size));
 }
 
 cv::Mat distorted_input(const cv::Mat& view, const Config& config, core::Random& random) {
@@ -154,6 +153,10 @@ Batch ExampleMaker::batch(std::span<const int> indices, std::uint64_t seed) cons
     }
   }
   return batch;
+}
+
+cv::Mat ExampleMaker::input(int index) const {
+  return encoder_input(views_[static_cast<std::size_t>(index)], config_.input_size);
 }
 
 }  // namespace samewhere::train

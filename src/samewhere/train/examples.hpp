@@ -20,8 +20,8 @@ struct Batch {
 cv::Size input_size_px(InputSize size);
 int target_length(Target target);
 
-// The view as the encoder sees it in use: reduced by averaging, 32-bit float in [0, 1]. `view` is
-// 8-bit grey and equalised (describe::preprocess).
+// The view as the encoder sees it in use, describe::network_input. `view` is 8-bit grey and
+// equalised (describe::preprocess).
 cv::Mat encoder_input(const cv::Mat& view, InputSize size);
 
 // The view from somewhere else, in other light, by another camera: see README.md. Same form.
@@ -51,6 +51,8 @@ class ExampleMaker {
 
   // Distorted views `indices` and their scaled targets. View i is distorted as `seed` and i say.
   Batch batch(std::span<const int> indices, std::uint64_t seed) const;
+  // The view as it is.
+  cv::Mat input(int index) const;
 
  private:
   Config config_;

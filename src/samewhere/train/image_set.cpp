@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -76,8 +78,10 @@ OpenSource open_files(const std::string& name, const Config& config) {
           }};
 }
 
-void read_source(const OpenSource& source, const ReadingProgress& on_progress, ImageSet& images) {
-  SourceCount count{.source = source.name};
+// Reads it into `images`.
+void read_source(const OpenSource& source, bool is_held_back, const ReadingProgress& on_progress,
+                 ImageSet& images) {
+  SourceCount count{.source = source.name, .is_held_back = is_held_back};
   core::OrderedWorkers<std::optional<cv::Mat>> workers(source.num_images,
                                                        core::num_hardware_threads(), source.make);
   for (int i = 0; i < source.num_images && !core::is_interrupted(); ++i) {
@@ -94,44 +98,136 @@ void read_source(const OpenSource& source, const ReadingProgress& on_progress, I
   images.sources.push_back(count);
 }
 
-std::string sha256_of(const std::vector<cv::Mat>& views) {
+std::string sha256_of(const ImageSet& images) {
   Sha256 sha;
-  for (const cv::Mat& view : views) {
+  for (const SourceCount& source : images.sources) {
+    sha.add(fmt::format("{}{};", source.num_images, source.is_held_back ? " held back" : ""));
+  }
+  for (const cv::Mat& view : images.views) {
     sha.add({view.ptr<char>(), view.total() * view.elemSize()});
   }
   return sha.hex();
 }
 
+bool show_the_same(const std::string& a, const std::string& b) {
+  if (twin::is_twin_spec(a) != twin::is_twin_spec(b)) return false;
+  if (twin::is_twin_spec(a)) {
+    const twin::Spec first = twin::parse_spec(a);
+    const twin::Spec second = twin::parse_spec(b);
+    return first.preset == second.preset && first.seed == second.seed;
+  }
+  std::error_code ignored;  // what is not there is found when it is read
+  return a == b || std::filesystem::equivalent(a, b, ignored);
+}
+
+void require_other_places(std::span<const std::string> sources,
+                          std::span<const std::string> validate) {
+  for (const std::string& held_back : validate) {
+    const auto same = std::find_if(sources.begin(), sources.end(), [&](const std::string& source) {
+      return show_the_same(source, held_back);
+    });
+    if (same == sources.end()) continue;
+    throw core::InputError(fmt::format(
+        "--validate {}: is learnt from, too (--images {}), expected places not seen in training",
+        held_back, *same));
+  }
+}
+
+// Views next to each other in one source, from `begin` up to `end`.
+struct Block {
+  int begin = 0;
+  int end = 0;
+  int source_begin = 0;
+  int source_end = 0;
+};
+
+std::vector<Block> cut_into_blocks(const ImageSet& images, int length) {
+  std::vector<Block> blocks;
+  int source_begin = 0;
+  for (const SourceCount& source : images.sources) {
+    const int source_end = source_begin + source.num_images;
+    for (int begin = source_begin; begin < source_end; begin += length) {
+      blocks.push_back({begin, std::min(begin + length, source_end), source_begin, source_end});
+    }
+    source_begin = source_end;
+  }
+  return blocks;
+}
+
+enum class Use : std::uint8_t { kTraining, kNone, kValidation };
+
+std::vector<Use> use_of_sources(const ImageSet& images) {
+  std::vector<Use> uses;
+  for (const SourceCount& source : images.sources) {
+    uses.insert(uses.end(), static_cast<std::size_t>(source.num_images),
+                source.is_held_back ? Use::kValidation : Use::kTraining);
+  }
+  return uses;
+}
+
+void hold_back_blocks(const ImageSet& images, std::uint64_t seed, std::vector<Use>& uses) {
+  const int num_images = static_cast<int>(uses.size());
+  // few images: shorter blocks, so that one of ten can still be held back
+  const int length = std::clamp(num_images / (2 * kValidationShare), 1, kBlockLength);
+  const int margin = length / 4;
+  const std::vector<Block> blocks = cut_into_blocks(images, length);
+  const int num_blocks = static_cast<int>(blocks.size());
+  core::Random random(core::seed_of(seed, "split", 0));
+  const auto set = [&](int begin, int end, Use use) {
+    for (int i = begin; i < end; ++i) {
+      Use& before = uses[static_cast<std::size_t>(i)];
+      before = std::max(before, use);  // a margin takes nothing from another block held back
+    }
+  };
+  for (const int index :
+       random.distinct_indices(std::max(1, num_blocks / kValidationShare), num_blocks)) {
+    const Block& block = blocks[static_cast<std::size_t>(index)];
+    set(std::max(block.begin - margin, block.source_begin),
+        std::min(block.end + margin, block.source_end), Use::kNone);
+    set(block.begin, block.end, Use::kValidation);
+  }
+}
+
 }  // namespace
 
-ImageSet read_images(std::span<const std::string> sources, const Config& config,
-                     const ReadingProgress& on_progress) {
-  ImageSet images;
-  for (const std::string& name : sources) {
-    if (core::is_interrupted()) return images;
-    read_source(twin::is_twin_spec(name) ? open_twin(name, config) : open_files(name, config),
-                on_progress, images);
+int source_of(const ImageSet& images, int view) {
+  int end = 0;
+  for (std::size_t i = 0; i < images.sources.size(); ++i) {
+    end += images.sources[i].num_images;
+    if (view < end) return static_cast<int>(i);
   }
+  throw core::ContractError("every view is from a source");
+}
+
+ImageSet read_images(std::span<const std::string> sources, std::span<const std::string> validate,
+                     const Config& config, const ReadingProgress& on_progress) {
+  require_other_places(sources, validate);
+  ImageSet images;
+  const auto read = [&](const std::string& name, bool is_held_back) {
+    if (core::is_interrupted()) return;
+    read_source(twin::is_twin_spec(name) ? open_twin(name, config) : open_files(name, config),
+                is_held_back, on_progress, images);
+  };
+  for (const std::string& name : sources) read(name, false);
   if (images.views.size() < 2 && !core::is_interrupted()) {
     throw core::InputError("--images: one image in all, expected at least 2 to learn from");
   }
-  images.sha256 = sha256_of(images.views);
+  for (const std::string& name : validate) read(name, true);
+  images.sha256 = sha256_of(images);
   return images;
 }
 
-Split split_by_blocks(int num_images, std::uint64_t seed) {
-  core::require(num_images >= 2, "there are images to learn from and images to check with");
-  // few images: shorter blocks, so that one of ten can still be held back
-  const int block_length = std::clamp(num_images / (2 * kValidationShare), 1, kBlockLength);
-  const int num_blocks = (num_images + block_length - 1) / block_length;
-  core::Random random(core::seed_of(seed, "split", 0));
-  const std::vector<int> held_back =
-      random.distinct_indices(std::max(1, num_blocks / kValidationShare), num_blocks);
+Split split_views(const ImageSet& images, std::uint64_t seed) {
+  std::vector<Use> uses = use_of_sources(images);
+  core::require(uses.size() >= 2, "there are images to learn from and images to check with");
+  const bool has_held_back =
+      std::any_of(images.sources.begin(), images.sources.end(),
+                  [](const SourceCount& source) { return source.is_held_back; });
+  if (!has_held_back) hold_back_blocks(images, seed, uses);
   Split split;
-  for (int i = 0; i < num_images; ++i) {
-    const bool is_held_back =
-        std::find(held_back.begin(), held_back.end(), i / block_length) != held_back.end();
-    (is_held_back ? split.validation : split.training).push_back(i);
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (uses[i] == Use::kTraining) split.training.push_back(static_cast<int>(i));
+    if (uses[i] == Use::kValidation) split.validation.push_back(static_cast<int>(i));
   }
   return split;
 }

@@ -16,27 +16,32 @@ namespace samewhere::train {
 struct SourceCount {
   std::string source;  // as it was named
   int num_images = 0;
-  int num_unreadable = 0;  // skipped
+  int num_unreadable = 0;     // skipped
+  bool is_held_back = false;  // only to validate with
 };
 
-// All views to learn from, prepared: grey, equalised, small.
+// All views to learn from and to validate with, prepared: grey, equalised, small.
 struct ImageSet {
   std::vector<cv::Mat> views;  // source after source, each in its order
   std::vector<SourceCount> sources;
-  std::string sha256;  // of all pixels
+  std::string sha256;  // of all pixels, and of what belongs to which source
 };
+
+// Index of the source that a view is from.
+int source_of(const ImageSet& images, int view);
 
 // Called now and then while a source is read: its name, images done, images in all.
 using ReadingProgress = std::function<void(const std::string& source, int done, int total)>;
 
-// Reads each source (a recording or folder of images, a list of images, twin:PRESET?seed=3), passes
-// every view through describe::preprocess of the published settings and reduces it to twice the
-// encoder's size, 360 x 480 at most. Of several cameras the first counts. An image that cannot be
-// read is skipped and counted; the other errors are InputErrors: a source that is not there, or
-// that has no readable image, or less than two images in all. Ends early, with what was read, once
-// core::is_interrupted().
-ImageSet read_images(std::span<const std::string> sources, const Config& config,
-                     const ReadingProgress& on_progress);
+// Reads each source (a recording or folder of images, a list of images, twin:PRESET?seed=3), those
+// to validate with last, passes every view through describe::preprocess of the published settings
+// and reduces it to twice the encoder's size, 360 x 480 at most. Of several cameras the first
+// counts. An image that cannot be read is skipped and counted; the other errors are InputErrors: a
+// source that is not there, that has no readable image, or that is to be learnt from and validated
+// with (a rendered building of the same seed is the same), or less than two images to learn from.
+// Ends early, with what was read, once core::is_interrupted().
+ImageSet read_images(std::span<const std::string> sources, std::span<const std::string> validate,
+                     const Config& config, const ReadingProgress& on_progress);
 
 // Indices of views to learn from, and of those that only tell how well it went.
 struct Split {
@@ -44,9 +49,12 @@ struct Split {
   std::vector<int> validation;
 };
 
-// Neighbours in time show the same place, so the order is cut into blocks and whole blocks are held
-// back: about one image of ten. A block is 32 images long, less where there are few. At
-// least two images; otherwise ContractError.
-Split split_by_blocks(int num_images, std::uint64_t seed);
+// Where sources are held back, their views validate and all others are learnt from. Else,
+// neighbours in time showing the same place, each source is cut into blocks and about one of ten is
+// held back; views within a quarter of a block before and behind it in its source are in neither
+// list. A block is 32 views long, less where there are few. A place that a walk returns to may
+// still be on both sides: only other sources are surely other places. At least two images;
+// otherwise ContractError.
+Split split_views(const ImageSet& images, std::uint64_t seed);
 
 }  // namespace samewhere::train

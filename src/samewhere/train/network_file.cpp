@@ -1,15 +1,16 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/describe/inference.hpp>
 #include <samewhere/train/network_file.hpp>
 #include <samewhere/train/onnx_file.hpp>
-#include <samewhere/train/onnx_runner.hpp>
 #include <samewhere/train/sha256.hpp>
 #include <samewhere/train/validation.hpp>
 
@@ -19,7 +20,6 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr double kMaxExportError = 1e-5;
-constexpr std::size_t kNumChecked = 16;  // views that trained and exported network are compared on
 
 constexpr const char* kPreparation =
     "grey, 360 rows x 480 columns, histogram equalisation, reduced by averaging over the area, "
@@ -50,17 +50,25 @@ json layers_as_json(const NetworkPlan& plan) {
   return layers;
 }
 
-json images_as_json(const ImageSet& images, const Split& split) {
+json sources_as_json(const ImageSet& images, bool is_held_back) {
   json sources = json::array();
   for (const SourceCount& source : images.sources) {
+    if (source.is_held_back != is_held_back) continue;
     sources.push_back({{"source", source.source},
                        {"num_images", source.num_images},
                        {"num_unreadable", source.num_unreadable}});
   }
-  return {{"sources", sources},
+  return sources;
+}
+
+json images_as_json(const ImageSet& images, const Split& split) {
+  json validation_sources = sources_as_json(images, true);
+  if (validation_sources.empty()) validation_sources = "blocks of the sources";
+  return {{"sources", sources_as_json(images, false)},
+          {"validation_sources", validation_sources},
           {"num_training", split.training.size()},
           {"num_validation", split.validation.size()},
-          {"sha256_of_prepared_pixels", images.sha256}};
+          {"sha256_of_prepared_images", images.sha256}};
 }
 
 json epochs_as_json(const std::vector<EpochFigures>& history) {
@@ -81,7 +89,7 @@ std::string card_text(const Job& job, const ImageSet& images, const Trainer& tra
                      {"num_bytes", bytes.size()},
                      {"command", job.command},
                      {"version", job.version},
-                     {"commit", job.commit},
+                     {"commits", trainer.commits()},
                      {"settings", settings_as_json(job.config)},
                      {"images", images_as_json(images, trainer.split())},
                      {"input",
@@ -100,6 +108,33 @@ std::string card_text(const Job& job, const ImageSet& images, const Trainer& tra
   return card.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
+// In shares of the largest number of the trained code; no finite number if either is not.
+double difference(std::span<const float> trained, std::span<const float> exported) {
+  core::require(trained.size() == exported.size(), "codes are of one length");
+  double largest = 0.0;
+  double difference = 0.0;
+  for (std::size_t i = 0; i < trained.size(); ++i) {
+    const double error = std::abs(static_cast<double>(trained[i]) - exported[i]);
+    if (!std::isfinite(error)) return error;
+    largest = std::max(largest, std::abs(static_cast<double>(trained[i])));
+    difference = std::max(difference, error);
+  }
+  return difference == 0.0 ? 0.0 : difference / largest;
+}
+
+// A network that learning has ruined: that is the settings' fault.
+void require_usable(const Encoder& encoder, std::span<const float> codes, const Config& config) {
+  const std::vector<float> parameters = parameters_of(encoder);
+  const bool is_finite = std::all_of(parameters.begin(), parameters.end(),
+                                     [](float weight) { return std::isfinite(weight); });
+  const bool is_alive =
+      std::any_of(codes.begin(), codes.end(), [](float number) { return number != 0.0F; });
+  if (is_finite && is_alive) return;
+  throw core::InputError(fmt::format(
+      "learning_rate = {}: the best network {}, expected a smaller one", config.learning_rate,
+      is_finite ? "gives nothing but zeros" : "has weights that are not finite"));
+}
+
 std::filesystem::path beside(const std::filesystem::path& network, const char* ending) {
   std::filesystem::path path = network;
   return path.replace_extension(ending);
@@ -115,33 +150,49 @@ std::filesystem::path card_of(const std::filesystem::path& network) {
   return beside(network, ".json");
 }
 
-double export_error(Autoencoder& autoencoder, const ImageSet& images, const Config& config) {
-  OnnxRunner runner(onnx_bytes(autoencoder.encoder(), ""));
+void require_free(const std::filesystem::path& network) {
+  if (is_there(checkpoint_of(network))) return;
+  for (const std::filesystem::path& path : {network, card_of(network)}) {
+    if (!is_there(path)) continue;
+    throw core::InputError(
+        fmt::format("--out {}: {} is there already, expected a name that is free", network.string(),
+                    path.string()));
+  }
+}
+
+double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
+                    std::span<const float> trained_codes) {
+  core::require(!inputs.empty() && trained_codes.size() % inputs.size() == 0,
+                "there is one code for each input");
+  const std::size_t length = trained_codes.size() / inputs.size();
   double worst = 0.0;
-  for (std::size_t i = 0; i < std::min(kNumChecked, images.views.size()); ++i) {
-    const cv::Mat input = encoder_input(images.views[i], config.input_size);
-    const std::vector<float> trained = autoencoder.encode({input.ptr<float>(), input.total()});
-    const std::vector<float> exported = runner.encode(input);
-    const double difference = cv::norm(trained, exported, cv::NORM_INF);
-    worst = std::max(worst, difference / cv::norm(trained, cv::NORM_INF));
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const double error =
+        difference(trained_codes.subspan(i * length, length), exported.run(inputs[i]));
+    if (!std::isfinite(error)) return error;
+    worst = std::max(worst, error);
   }
   return worst;
 }
 
 Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer) {
-  core::require(export_error(trainer.autoencoder(), images, job.config) <= kMaxExportError,
-                "the exported network gives the codes of the trained one");
-  const std::string bytes = onnx_bytes(trainer.best_encoder(), kPreparation);
-  OnnxRunner runner(bytes);
+  const Encoder encoder = trainer.best_encoder();
+  require_usable(encoder, trainer.best_codes(), job.config);
+  const std::string bytes = onnx_bytes(encoder, kPreparation);
+  const auto exported = describe::make_inference(describe::parse_network(job.out, bytes));
+  core::require(
+      export_error(*exported, trainer.checked_inputs(), trainer.best_codes()) <= kMaxExportError,
+      "the exported network gives the codes of the trained one");
   const Split& split = trainer.split();
   const Quality quality{
       .best = trainer.best_epoch(),
       .recognition = recognition(images, split, job.config,
-                                 [&](const cv::Mat& input) { return runner.encode(input); }),
+                                 [&](const cv::Mat& input) { return exported->run(input); }),
       .recognition_of_hog = recognition(images, split, job.config, hog_of_input)};
   core::write_file(job.out, bytes);
   core::write_file(card_of(job.out), card_text(job, images, trainer, quality, bytes));
-  std::filesystem::remove(checkpoint_of(job.out));
+  std::error_code ignored;  // what stays does no harm
+  std::filesystem::remove(checkpoint_of(job.out), ignored);
   return quality;
 }
 

@@ -1,26 +1,32 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <samewhere/describe/inference.hpp>
 #include <samewhere/train/trainer.hpp>
 
 namespace samewhere::train {
 
 // What a person asked for.
 struct Job {
-  std::vector<std::string> images;  // sources
-  std::filesystem::path out;        // *.onnx
+  std::vector<std::string> images;    // sources to learn from
+  std::vector<std::string> validate;  // sources to validate with; none: blocks of the others
+  std::filesystem::path out;          // *.onnx
   Config config;
   std::string command;  // as it was typed, for the card
-  std::string version;  // of the program, and the commit it was built from
-  std::string commit;
+  std::string version;  // of the program
 };
 
 // Files beside the network: what the training goes on from, and what tells how it came about.
 std::filesystem::path checkpoint_of(const std::filesystem::path& network);
 std::filesystem::path card_of(const std::filesystem::path& network);
+
+// Throws InputError if the network or its card is there already, unless the checkpoint of a
+// training is, too, or if the system cannot say.
+void require_free(const std::filesystem::path& network);
 
 // What the finished network does on the validation views.
 struct Quality {
@@ -30,13 +36,16 @@ struct Quality {
 };
 
 // Writes the best encoder of a training as an ONNX file with its card (JSON) and removes the
-// checkpoint. Before, the encoder of the last epoch is exported and run by OpenCV on validation
-// views: a code further than 1e-5 of its largest number from the trained one's throws
-// ContractError, and nothing is written. Throws InputError if a file cannot be written.
+// checkpoint. Before, the very bytes that are written are run by describe::make_inference on
+// Trainer::checked_inputs(): an export_error() above 1e-5 throws ContractError. Throws InputError
+// if the network's weights are not finite or all its codes are zero, and if a file cannot be
+// written. After an error there is no network, and the checkpoint is still there.
 Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer);
 
-// The largest difference between the codes of trained and exported network on some of the views, in
-// shares of the largest number of the code.
-double export_error(Autoencoder& autoencoder, const ImageSet& images, const Config& config);
+// The largest difference between what the trained network made of some inputs (one code after the
+// other) and what the exported one makes of them, in shares of the largest number of the code; not
+// finite if a number of either is not.
+double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
+                    std::span<const float> trained_codes);
 
 }  // namespace samewhere::train

@@ -16,6 +16,8 @@ namespace {
 
 using core::InputError;
 
+constexpr std::size_t kNumChecked = 16;  // views that trained and exported network are compared on
+
 std::uint64_t seed_of(const Config& config) { return static_cast<std::uint64_t>(config.seed); }
 
 std::vector<std::vector<int>> cut(const std::vector<int>& order, int batch) {
@@ -44,6 +46,16 @@ std::string settings_text(Config config) {
   return core::config_as_yaml(config);
 }
 
+// Outputs x inputs x side of each kernel, its stride and padding.
+std::string layers_text(const NetworkPlan& plan) {
+  std::string text = fmt::format("input {}x{}, ", plan.input_px.height, plan.input_px.width);
+  for (const ConvolutionPlan& layer : plan.convolutions) {
+    text += fmt::format("{}x{}x{} stride {} padding {}, ", layer.num_outputs, layer.num_inputs,
+                        layer.kernel_px, layer.stride_px, layer.padding_px);
+  }
+  return text + fmt::format("code {}, target {}", plan.code_size, plan.target_size);
+}
+
 // One setting a line.
 void check_settings(const std::filesystem::path& checkpoint, const std::string& found,
                     const std::string& expected) {
@@ -62,21 +74,31 @@ void check_settings(const std::filesystem::path& checkpoint, const std::string& 
 
 }  // namespace
 
-Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint)
+Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint,
+                 const std::string& commit)
     : config_(config),
       checkpoint_path_(std::move(checkpoint)),
       plan_(plan_network(config)),
-      split_(split_by_blocks(static_cast<int>(images.views.size()), seed_of(config))),
+      split_(split_views(images, seed_of(config))),
       examples_(config, images.views,
                 scale_of_targets(images.views, split_.training, config.target)),
-      state_{.settings = settings_text(config), .images_sha256 = images.sha256},
+      state_{.settings = settings_text(config),
+             .network = layers_text(plan_),
+             .images_sha256 = images.sha256,
+             .commits = {commit}},
       autoencoder_(plan_, seed_of(config)) {
-  if (std::filesystem::exists(checkpoint_path_)) resume();
+  if (is_there(checkpoint_path_)) resume(commit);
 }
 
-void Trainer::resume() {
+void Trainer::resume(const std::string& commit) {
   Checkpoint found = read_checkpoint(checkpoint_path_);
   check_settings(checkpoint_path_, found.settings, state_.settings);
+  if (found.network != state_.network) {
+    throw InputError(fmt::format(
+        "{}: was made by commit {} with another network ({}), this program has {}; go on with that "
+        "one, or remove it to begin anew",
+        checkpoint_path_.string(), fmt::join(found.commits, ", "), found.network, state_.network));
+  }
   if (found.images_sha256 != state_.images_sha256) {
     throw InputError(checkpoint_path_.string() +
                      ": was made with other images; give the same --images, or remove it to begin "
@@ -84,6 +106,7 @@ void Trainer::resume() {
   }
   autoencoder_.restore(found.autoencoder);
   state_ = std::move(found);
+  if (state_.commits.back() != commit) state_.commits.push_back(commit);
 }
 
 EpochFigures Trainer::best_epoch() const {
@@ -118,6 +141,13 @@ std::vector<std::vector<int>> Trainer::training_batches(int epoch) const {
   return batches;
 }
 
+void Trainer::require_finite(double error, int epoch) const {
+  if (std::isfinite(error)) return;
+  throw InputError(fmt::format(
+      "learning_rate = {}: the loss is no longer finite in epoch {}, expected a smaller one",
+      config_.learning_rate, epoch));
+}
+
 std::optional<double> Trainer::learn(int epoch, const std::function<void(int, int)>& on_progress) {
   const std::vector<std::vector<int>> batches = training_batches(epoch);
   const std::uint64_t seed =
@@ -131,11 +161,7 @@ std::optional<double> Trainer::learn(int epoch, const std::function<void(int, in
   while (const std::optional<Batch> batch = loader.next()) {
     if (core::is_interrupted()) return std::nullopt;
     sum += batch->num_examples * autoencoder_.learn(*batch, learning_rate(epoch));
-    if (!std::isfinite(sum)) {
-      throw InputError(fmt::format(
-          "learning_rate = {}: the loss is no longer finite in epoch {}, expected a smaller one",
-          config_.learning_rate, epoch));
-    }
+    require_finite(sum, epoch);
     num_done += batch->num_examples;
     on_progress(num_done, static_cast<int>(split_.training.size()));
   }
@@ -152,16 +178,38 @@ double Trainer::validation_error() {
   return sum / static_cast<double>(split_.validation.size());
 }
 
+// Spread over the validation views.
+std::vector<cv::Mat> Trainer::checked_inputs() const {
+  const std::size_t num_views = split_.validation.size();
+  const std::size_t num_checked = std::min(kNumChecked, num_views);
+  std::vector<cv::Mat> inputs;
+  for (std::size_t i = 0; i < num_checked; ++i) {
+    inputs.push_back(examples_.input(split_.validation[i * num_views / num_checked]));
+  }
+  return inputs;
+}
+
+std::vector<float> Trainer::checked_codes() {
+  std::vector<float> codes;
+  for (const cv::Mat& input : checked_inputs()) {
+    const std::vector<float> code = autoencoder_.encode({input.ptr<float>(), input.total()});
+    codes.insert(codes.end(), code.begin(), code.end());
+  }
+  return codes;
+}
+
 std::optional<EpochFigures> Trainer::run_epoch(const std::function<void(int, int)>& on_progress) {
   EpochFigures figures{.epoch = static_cast<int>(history().size()) + 1};
   const std::optional<double> training_error = learn(figures.epoch, on_progress);
   if (!training_error) return std::nullopt;
   figures.training_error = *training_error;
   figures.validation_error = validation_error();
+  require_finite(figures.validation_error, figures.epoch);
   state_.history.push_back(figures);
   state_.autoencoder = autoencoder_.state();
   if (best_epoch().epoch == figures.epoch) {
     state_.best_parameters = parameters_of(autoencoder_.encoder());
+    state_.best_codes = checked_codes();
   }
   write_checkpoint(checkpoint_path_, state_);
   return figures;

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <samewhere/train/autoencoder.hpp>
@@ -17,32 +19,43 @@ namespace samewhere::train {
 class Trainer {
  public:
   // Goes on from the checkpoint if there is one. Throws InputError if it belongs to other settings
-  // (naming the first) or other images. `images` must outlive the trainer.
-  Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint);
+  // (naming the first), another network or other images. `commit` is that of the running program.
+  // `images` must outlive the trainer.
+  Trainer(const Config& config, const ImageSet& images, std::filesystem::path checkpoint,
+          const std::string& commit);
 
   const NetworkPlan& plan() const { return plan_; }
   const Split& split() const { return split_; }
   const std::vector<EpochFigures>& history() const { return state_.history; }
+  // Of the programs that had a part in it, each once where it took over. Two may train differently.
+  const std::vector<std::string>& commits() const { return state_.commits; }
   bool is_done() const;
   // As the last epoch left it.
   Autoencoder& autoencoder() { return autoencoder_; }
 
   // One pass over the images, told to `on_progress` (images done, images in all). Nothing if
   // core::is_interrupted() ended it after a batch: what it learnt is lost, the epochs before are in
-  // the checkpoint. Throws InputError if the checkpoint cannot be written or the loss is no longer
-  // finite.
+  // the checkpoint. Throws InputError if the checkpoint cannot be written, or if the loss, of
+  // training or of validation, is no longer finite: the checkpoint stays that of the epoch before.
   std::optional<EpochFigures> run_epoch(const std::function<void(int, int)>& on_progress);
 
   // The epoch with the least validation error so far, and its encoder. At least one epoch is done.
   EpochFigures best_epoch() const;
   Encoder best_encoder() const;
 
+  // Up to 16 validation views as the encoder sees them, and what the network itself, not its
+  // export, made of them when it was best: one code after the other.
+  std::vector<cv::Mat> checked_inputs() const;
+  std::span<const float> best_codes() const { return state_.best_codes; }
+
  private:
-  void resume();
+  void resume(const std::string& commit);
   double learning_rate(int epoch) const;
   std::vector<std::vector<int>> training_batches(int epoch) const;
+  void require_finite(double error, int epoch) const;
   std::optional<double> learn(int epoch, const std::function<void(int, int)>& on_progress);
   double validation_error();
+  std::vector<float> checked_codes();
 
   Config config_;
   std::filesystem::path checkpoint_path_;

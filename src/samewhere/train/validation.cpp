@@ -4,6 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/describe/config.hpp>
@@ -14,38 +15,46 @@
 namespace samewhere::train {
 namespace {
 
-constexpr int kMaxNeighbour = 4;  // places in the order
+constexpr int kMaxNeighbour = 4;  // places in the order of a source
 
 // Index of the code most like `code`: all are of length 1.
-int nearest(const std::vector<std::vector<float>>& codes, const std::vector<float>& code) {
+std::size_t nearest(const Codes& codes, const std::vector<float>& code) {
   std::vector<float> similarity;
   for (const auto& other : codes) similarity.push_back(core::dot(other, code));
-  return static_cast<int>(std::max_element(similarity.begin(), similarity.end()) -
-                          similarity.begin());
+  return static_cast<std::size_t>(std::max_element(similarity.begin(), similarity.end()) -
+                                  similarity.begin());
+}
+
+bool are_neighbours(const ImageSet& images, int a, int b) {
+  return std::abs(a - b) <= kMaxNeighbour && source_of(images, a) == source_of(images, b);
 }
 
 }  // namespace
+
+double share_found(const ImageSet& images, std::span<const int> views, const Codes& codes,
+                   const Codes& queries) {
+  core::require(!views.empty() && codes.size() == views.size() && queries.size() == views.size(),
+                "each view has a code and is asked for once");
+  int num_found = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (are_neighbours(images, views[nearest(codes, queries[i])], views[i])) ++num_found;
+  }
+  return static_cast<double>(num_found) / static_cast<double>(views.size());
+}
 
 double recognition(const ImageSet& images, const Split& split, const Config& config,
                    const Encode& encode) {
   Config warped = config;
   warped.warp = true;
-  const auto view = [&](int i) -> const cv::Mat& {
-    return images.views[static_cast<std::size_t>(split.validation[static_cast<std::size_t>(i)])];
-  };
-  const int num_views = static_cast<int>(split.validation.size());
-  std::vector<std::vector<float>> codes;
-  for (int i = 0; i < num_views; ++i) {
-    codes.push_back(core::unit(encode(encoder_input(view(i), config.input_size))));
+  Codes codes;
+  Codes queries;
+  for (std::size_t i = 0; i < split.validation.size(); ++i) {
+    const cv::Mat& view = images.views[static_cast<std::size_t>(split.validation[i])];
+    core::Random random(core::seed_of(static_cast<std::uint64_t>(config.seed), "recognition", i));
+    codes.push_back(core::unit(encode(encoder_input(view, config.input_size))));
+    queries.push_back(core::unit(encode(distorted_input(view, warped, random))));
   }
-  int num_found = 0;
-  for (int i = 0; i < num_views; ++i) {
-    core::Random random(core::seed_of(static_cast<std::uint64_t>(config.seed), "recognition",
-                                      static_cast<std::uint64_t>(i)));
-    const auto code = core::unit(encode(distorted_input(view(i), warped, random)));
-    if (std::abs(nearest(codes, code) - i) <= kMaxNeighbour) ++num_found;
-  }
-  return static_cast<double>(num_found) / std::max(num_views, 1);
+  return share_found(images, split.validation, codes, queries);
 }
 
 std::vector<float> hog_of_input(const cv::Mat& input) {
