@@ -31,7 +31,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  samewhere train --images photos twin:hotel?seed=7 --out models/mine.onnx\n"
     "  samewhere train --images gallery.txt --validate twin:hotel?seed=8 --out mine.onnx\n"
-    "  samewhere train --images gallery.txt --out small.onnx --code-size 280 --epochs 20\n"
+    "  samewhere train --images gallery.txt --out small.onnx --code-size 264 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
     "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";

@@ -58,8 +58,8 @@ class Layers : public torch::nn::Module {
 
   Tensor encode(Tensor x) {
     for (std::size_t i = 0; i < convolutions_.size(); ++i) {
-      x = torch::relu(norms_[i](convolutions_[i](x)));
-      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(x, 2, 2);
+      x = norms_[i](convolutions_[i](x));
+      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(torch::relu(x), 2, 2);
     }
     x = torch::avg_pool2d(x, kCodeWindow, kCodeStep);
     return x.flatten(1);

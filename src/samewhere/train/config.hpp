@@ -21,7 +21,7 @@ struct Config {
   int seed = 0;
   int threads = 0;
   InputSize input_size = InputSize::k120x160;
-  int code_size = 1050;
+  int code_size = 1056;
   int channels = 64;
   Target target = Target::kHog;
   bool warp = true;
@@ -43,9 +43,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "rows x columns of what the encoder sees",
          .choices = {"120x160", "180x240", "360x480"}});
   visit("code_size", config.code_size,
-        {.help = "length of the code, a multiple of 35 (5 x 7 positions)",
-         .min = 35,
-         .max = 35 * 256});
+        {.help = "length of the code, a multiple of 24 (4 x 6 positions)",
+         .min = 24,
+         .max = 24 * 256});
   visit("channels", config.channels,
         {.help = "of the first layer; the second has twice as many", .min = 1, .max = 256});
   visit("target", config.target,

@@ -20,6 +20,7 @@ const cv::Size kPixels_px(80, 60);
 
 constexpr double kMaxCornerShift = 0.25;  // of the side, as the published method
 // Photometric changes. Equalisation has undone much of them before, so they are mild.
+constexpr double kLightSigma = 0.4;  // of the logarithm, from place to place
 constexpr double kMaxLogGain = 0.25;
 constexpr double kMaxLogGamma = 0.25;
 constexpr double kMaxBias = 0.1;         // of the whole range
@@ -51,6 +52,23 @@ cv::Mat seen_from_elsewhere(const cv::Mat& view, core::Random& random) {
   cv::warpPerspective(view, warped, cv::getPerspectiveTransform(from.data(), to.data()),
                       view.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   return warped;
+}
+
+// Light that falls otherwise: brighter in one part of the view, darker in another, smoothly. What
+// equalisation cannot undo.
+void light_anew(cv::Mat& input, core::Random& random) {
+  const cv::Size kLights(5, 4);
+  cv::Mat lights(kLights, CV_32F);
+  for (int row = 0; row < lights.rows; ++row) {
+    for (int column = 0; column < lights.cols; ++column) {
+      lights.at<float>(row, column) =
+          static_cast<float>(std::exp(kLightSigma * random.gaussian()));
+    }
+  }
+  constexpr double kDarkest = 0.05;  // the cubic between two lights may swing below 0
+  cv::Mat light;
+  cv::resize(lights, light, input.size(), 0.0, 0.0, cv::INTER_CUBIC);
+  input = input.mul(cv::max(light, kDarkest));
 }
 
 // Blur of the lens, then light and exposure, then noise of the sensor, then the range of a picture.
@@ -98,6 +116,7 @@ cv::Mat encoder_input(const cv::Mat& view, InputSize size) {
 cv::Mat distorted_input(const cv::Mat& view, const Config& config, core::Random& random) {
   const cv::Mat seen = config.warp ? seen_from_elsewhere(view, random) : view;
   cv::Mat input = encoder_input(seen, config.input_size);
+  light_anew(input, random);
   photograph_again(input, random);
   return input;
 }

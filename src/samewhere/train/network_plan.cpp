@@ -7,13 +7,13 @@
 namespace samewhere::train {
 namespace {
 
-constexpr int kNumPositions = 5 * 7;
+constexpr int kNumPositions = 4 * 6;
 
 void check_code_size(int code_size) {
   if (code_size % kNumPositions == 0) return;
   const int below = code_size / kNumPositions * kNumPositions;
   throw core::InputError(
-      fmt::format("code_size = {}: expected a multiple of {} (5 x 7 positions), such as {} or {}",
+      fmt::format("code_size = {}: expected a multiple of {} (4 x 6 positions), such as {} or {}",
                   code_size, kNumPositions, below, below + kNumPositions));
 }
 

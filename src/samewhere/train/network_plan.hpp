@@ -8,8 +8,9 @@
 
 namespace samewhere::train {
 
-// One convolution, square kernel, followed by ReLU. All but the last are followed by the maximum of
-// each 2 x 2 positions, too.
+// One convolution, square kernel. All but the last are followed by ReLU and the maximum of each
+// 2 x 2 positions; the last is not, so that the numbers of a code lie around 0 and a constant that
+// all views share does not pass for likeness.
 struct ConvolutionPlan {
   int num_inputs = 0;  // channels
   int num_outputs = 0;
@@ -19,9 +20,9 @@ struct ConvolutionPlan {
 };
 
 // The code is the mean of what the last convolution gives (14 x 19 positions) in windows of so many
-// positions a side, so many apart: 5 x 7 of them.
-inline constexpr int kCodeWindow = 6;
-inline constexpr int kCodeStep = 2;
+// positions a side, so many apart: 4 x 6 of them.
+inline constexpr int kCodeWindow = 4;
+inline constexpr int kCodeStep = 3;
 
 // The shape of the encoder, after CALC (Merrill and Huang, RSS 2018): three convolutions. The first
 // has the stride that brings any input to 62 x 82 positions, so that all later layers, their cost

@@ -88,8 +88,9 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
   for (std::size_t i = 0; i < num_convolutions; ++i) {
     const std::string number = std::to_string(i + 1);
     add_convolution(graph, chain, "convolution" + number, encoder.convolutions[i]);
+    if (i + 1 == num_convolutions) break;
     chain.add("Relu", "relu" + number);
-    if (i + 1 < num_convolutions) add_pooling(chain, "MaxPool", "maximum" + number, 2, 2);
+    add_pooling(chain, "MaxPool", "maximum" + number, 2, 2);
   }
   add_pooling(chain, "AveragePool", "mean", kCodeWindow, kCodeStep);
   onnx::NodeProto& flatten = chain.add("Flatten", "code");

@@ -163,7 +163,7 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   const std::string network = core::read_file(job.out);
   const auto card = nlohmann::json::parse(core::read_file(card_of(job.out)));
   EXPECT_EQ(card["sha256"], sha256_of(network));
-  EXPECT_EQ(card["settings"]["code_size"], "245");
+  EXPECT_EQ(card["settings"]["code_size"], "240");
   EXPECT_EQ(card["images"]["sources"][0]["num_images"], 24);
   EXPECT_EQ(card["images"]["validation_sources"], "blocks of the sources");
   EXPECT_EQ(card["epochs"].size(), 4U);
