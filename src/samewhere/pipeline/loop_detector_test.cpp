@@ -55,8 +55,7 @@ TEST(LoopDetector, WithoutAPauseEveryMatchOfAViewIsJudgedForItself) {
   config.verify.pause_frames = 0;
   LoopDetector detector(config);
   for (std::uint64_t frame = 0; frame < 3; ++frame) EXPECT_TRUE(stages(detector, frame).empty());
-  EXPECT_EQ(stages(detector, 20),
-            (std::vector<std::string>{"accepted", "accepted", "similarity"}));
+  EXPECT_EQ(stages(detector, 20), (std::vector<std::string>{"accepted", "accepted", "similarity"}));
 }
 
 }  // namespace
