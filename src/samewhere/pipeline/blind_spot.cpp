@@ -137,9 +137,9 @@ std::string blind_spot_sentence(const std::vector<BlindSpotPoint>& points, int n
   });
   core::require(last != points.rend(), "the number of draws was measured");
   return fmt::format(
-      "Among {} views, {} draws miss the queue of the most similar one with a chance of "
-      "{:.1f} %; measured, no view of it was handed on in {:.1f} % of the searches.",
-      last->num_stored, num_draws, 100.0 * last->expected, 100.0 * last->measured);
+      "Among {} views, L = {} misses the right queue in {:.1f} % of the searches; {:.1f} % by the "
+      "draws alone.",
+      last->num_stored, num_draws, 100.0 * last->measured, 100.0 * last->expected);
 }
 
 std::string blind_spot_svg(const std::vector<BlindSpotPoint>& points,

@@ -71,8 +71,8 @@ TEST(BlindSpot, IsDrawnAndSaidInOneSentence) {
   const std::vector<BlindSpotPoint> points{{100, 50, 0.005, 9, 0.01}, {1000, 50, 0.605, 9, 0.612}};
   EXPECT_THAT(
       blind_spot_sentence(points, 50),
-      HasSubstr("Among 1000 views, 50 draws miss the queue of the most similar one "
-                "with a chance of 60.5 %; measured, no view of it was handed on in 61.2 %"));
+      HasSubstr("Among 1000 views, L = 50 misses the right queue in 61.2 % of the searches; "
+                "60.5 % by the draws alone."));
   const std::string svg = blind_spot_svg(points, {});
   EXPECT_THAT(svg, HasSubstr("L = 50, formula"));
   EXPECT_THAT(svg, HasSubstr("L = 50, measured"));

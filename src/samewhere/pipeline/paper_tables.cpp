@@ -236,7 +236,7 @@ report::PlotCurve curve_of(const PaperBlock& block, const PaperRun& run,
                            const std::string& colour) {
   const bool is_sampled = run.search == retrieve::Search::kSampled;
   report::PlotCurve curve{
-      .name = fmt::format("{}, {}, AUC {:.3f}", block.describer,
+      .name = fmt::format("{}, {}: {:.3f}", block.describer,
                           is_sampled ? fmt::format("L = {}", run.num_draws) : column_name(run),
                           run.result.auc),
       .points = {},
@@ -247,7 +247,7 @@ report::PlotCurve curve_of(const PaperBlock& block, const PaperRun& run,
 }
 
 report::PlotCurve published_points() {
-  report::PlotCurve points{.name = "published, its recordings",
+  report::PlotCurve points{.name = "published, its own data",
                            .points = {},
                            .colour = "#888888",
                            .style = report::PlotStyle::kMarks};
@@ -257,12 +257,12 @@ report::PlotCurve published_points() {
 }
 
 std::string published_note() {
-  std::string note = fmt::format("Published AUC at L = {}:", kPublishedDrawsOfUse);
+  std::string note = fmt::format("Numbers are AUC. Published at L = {}", kPublishedDrawsOfUse);
   const auto* const column =
       std::find(kPublishedNumDraws.begin(), kPublishedNumDraws.end(), kPublishedDrawsOfUse);
   const auto index = static_cast<std::size_t>(column - kPublishedNumDraws.begin());
   for (const PublishedSequence& published : kPublishedSequences)
-    fmt::format_to(std::back_inserter(note), " {} {:.3f}", published.name, published.auc[index]);
+    fmt::format_to(std::back_inserter(note), ", {} {:.3f}", published.name, published.auc[index]);
   return note;
 }
 
@@ -347,8 +347,8 @@ std::string curves_svg(const std::vector<PaperBlock>& blocks) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto& [sampled_colour, exact_colour] = kDescriberColours[i % kDescriberColours.size()];
     const auto [sampled, exact] = runs_to_draw(blocks[i]);
-    plot.curves.push_back(curve_of(blocks[i], *sampled, sampled_colour));
     plot.curves.push_back(curve_of(blocks[i], *exact, exact_colour));
+    plot.curves.push_back(curve_of(blocks[i], *sampled, sampled_colour));
   }
   plot.curves.push_back(published_points());
   return report::plot_svg(plot);

@@ -107,8 +107,8 @@ TEST(PaperTables, TheDescribersOfARecordingShareAPicture) {
   other.describer = "network";
   const std::string svg = curves_svg({block, other});
   EXPECT_THAT(svg, HasSubstr("hotel?seed=3&amp;similarity=1"));
-  for (const char* curve : {"by hand, L = 500, AUC 0.528", "by hand, exact, AUC 0.528",
-                            "network, L = 500, AUC 0.528", "network, exact, AUC 0.528"}) {
+  for (const char* curve : {"by hand, L = 500: 0.528", "by hand, exact: 0.528",
+                            "network, L = 500: 0.528", "network, exact: 0.528"}) {
     EXPECT_THAT(svg, HasSubstr(curve));
   }
   EXPECT_THAT(svg, HasSubstr("Lip6 Indoor 0.832"));
