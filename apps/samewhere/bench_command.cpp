@@ -17,6 +17,7 @@
 #include <samewhere/core/program.hpp>
 #include <samewhere/pipeline/blind_spot.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
+#include <samewhere/pipeline/paper_curves.hpp>
 #include <samewhere/pipeline/paper_runs.hpp>
 #include <samewhere/pipeline/paper_tables.hpp>
 #include <samewhere/pipeline/view_pool.hpp>

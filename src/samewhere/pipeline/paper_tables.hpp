@@ -24,9 +24,5 @@ std::string paper_text(const PaperBlock& block, const PaperTableNumbers& numbers
 std::string searches_csv(const std::vector<PaperBlock>& blocks);
 // One row for each step of each block and number of draws, milliseconds a frame. As CSV.
 std::string times_csv(const std::vector<PaperBlock>& blocks);
-// The precision-recall curves of one recording by each describer, as SVG: of the first seed with
-// the published number of draws (or the most that were searched with, if it is not among them) and
-// of the exact search, beside what the published method says of its own recordings.
-std::string curves_svg(const std::vector<PaperBlock>& blocks_of_a_recording);
 
 }  // namespace samewhere::pipeline

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/pipeline/paper_curves.hpp>
 #include <samewhere/pipeline/paper_tables.hpp>
 #include <samewhere/pipeline/test_described.hpp>
 
