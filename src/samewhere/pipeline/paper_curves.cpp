@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -55,12 +54,15 @@ report::PlotCurve published_points() {
 }
 
 std::string published_note() {
-  std::string note = fmt::format("Numbers are AUC. Published at L = {}", kPublishedDrawsOfUse);
+  std::string note = fmt::format("Numbers are AUC. Published at L = {}:", kPublishedDrawsOfUse);
   const auto* const column =
       std::find(kPublishedNumDraws.begin(), kPublishedNumDraws.end(), kPublishedDrawsOfUse);
   const auto index = static_cast<std::size_t>(column - kPublishedNumDraws.begin());
-  for (const PublishedSequence& published : kPublishedSequences)
-    fmt::format_to(std::back_inserter(note), ", {} {:.3f}", published.name, published.auc[index]);
+  const char* separator = " ";
+  for (const PublishedSequence& published : kPublishedSequences) {
+    note += fmt::format("{}{} {:.3f}", separator, published.name, published.auc[index]);
+    separator = ", ";
+  }
   return note;
 }
 
