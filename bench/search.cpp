@@ -1,6 +1,7 @@
 // search SOURCE...: what does finding a view among many stored ones cost, step by step?
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -10,22 +11,21 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <opencv2/core.hpp>
 
 #include "program.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/view_pool.hpp>
 #include <samewhere/retrieve/retriever.hpp>
 #include <samewhere/retrieve/search.hpp>
 
 namespace samewhere::bench {
 namespace {
-
-constexpr std::uint64_t kQuerySeed = 1'000'000'000;  // no view that is stored has it
 
 struct Options {
   std::vector<std::string> sources;
@@ -36,31 +36,16 @@ struct Options {
   std::string csv_file;
 };
 
-std::vector<cv::Mat> images_of(const Options& options) {
-  std::vector<cv::Mat> images;
+pipeline::ViewPool pool_of(const Options& options, describe::Describer& describer) {
+  std::vector<pipeline::Config> configs;
   for (const std::string& name : options.sources) {
-    pipeline::Config config = options.config;
-    config.source = pipeline::absolute_source(name);
-    const auto source = pipeline::open_source(config);
-    while (const auto frame = source->next()) images.push_back(frame->images.front().clone());
+    configs.push_back(options.config);
+    configs.back().source = pipeline::absolute_source(name);
   }
-  return images;
-}
-
-// View `number` of as many as are wanted: first the images as they are, then crops of them at
-// random, half the side to all but a tenth of it.
-cv::Mat view_of(const std::vector<cv::Mat>& images, std::uint64_t number) {
-  const cv::Mat& image = images[number % images.size()];
-  if (number < images.size()) return image;
-  core::Random random(core::seed_of(1, "crop", number));
-  const double scale = random.uniform(0.5, 0.9);
-  const cv::Size size(static_cast<int>(scale * image.cols), static_cast<int>(scale * image.rows));
-  const auto drawn = [&random](int bound) {
-    return static_cast<int>(random.index(static_cast<std::uint64_t>(bound) + 1));
-  };
-  const int left = drawn(image.cols - size.width);
-  const int top = drawn(image.rows - size.height);
-  return image(cv::Rect(cv::Point(left, top), size));
+  auto pool = pipeline::make_view_pool(
+      configs, describer, {.num_stored = options.sizes.back(), .num_queries = options.num_queries});
+  if (!pool) throw core::Interrupted();
+  return std::move(*pool);
 }
 
 // The time of one reading of what exact search reads: no search can be faster.
@@ -81,18 +66,16 @@ class SearchBench {
  public:
   explicit SearchBench(const Options& options)
       : options_(options),
-        images_(images_of(options)),
         describer_(describe::make_describer(options.config.describe)),
-        store_(options.config.retrieve.group_size, options.config.retrieve.queue_size) {
-    core::require(!images_.empty(), "a source has frames");
-  }
+        pool_(pool_of(options, *describer_)),
+        store_(options.config.retrieve.group_size, options.config.retrieve.queue_size) {}
 
   void measure(int num_views, Table& table) {
     core::Timings timings;
-    while (store_.num_vectors() < num_views) add_next(timings);
-    for (int i = 0; i < options_.num_queries; ++i) query(static_cast<std::uint64_t>(i), timings);
-    const double found = static_cast<double>(num_found_) / options_.num_queries;
-    num_found_ = 0;
+    while (store_.num_vectors() < num_views) store_next(timings);
+    int num_found = 0;
+    for (std::size_t i = 0; i < pool_.queries.size(); ++i) num_found += query(i, timings) ? 1 : 0;
+    const double found = static_cast<double>(num_found) / static_cast<double>(pool_.queries.size());
     for (const auto& [step, durations_ms] : timings.durations_ms()) {
       const core::TimingSummary summary = core::summarize(durations_ms);
       table.rows.push_back(
@@ -104,44 +87,45 @@ class SearchBench {
   }
 
  private:
-  core::Descriptor described(std::uint64_t number, std::uint64_t frame) {
-    return describer_->describe(core::FrameId(frame), view_of(images_, number));
+  void store_next(core::Timings& timings) {
+    const auto& view = pool_.stored[static_cast<std::size_t>(store_.num_vectors())];
+    const core::ScopedTimer timer(timings, "store");
+    store_.append(view.frame, view.unit);
   }
 
-  void add_next(core::Timings& timings) {
-    const auto number = static_cast<std::uint64_t>(store_.num_vectors());
-    core::Descriptor descriptor;
+  // Whether the sampled search has found the most similar view.
+  bool query(std::size_t number, core::Timings& timings) {
+    const core::Descriptor& query = pool_.queries[number];
     {
       const core::ScopedTimer timer(timings, "describe");
-      descriptor = described(number, number);
+      describer_->describe(query.frame, pool_.pictures[number]);
     }
-    const core::ScopedTimer timer(timings, "store");
-    store_.append(descriptor.frame, descriptor.unit);
-  }
-
-  void query(std::uint64_t number, core::Timings& timings) {
-    const auto num_views = static_cast<std::uint64_t>(store_.num_vectors());
-    const core::Descriptor query = described(kQuerySeed + number, num_views + number);
-    const auto exact = best(exact_search(query, timings));
-    const auto sampled = best(sampled_search(query, timings));
-    if (!sampled.empty() && sampled.front().position == exact.front().position) ++num_found_;
+    const auto exact = exact_search(query, timings);
+    const auto sampled = sampled_search(query, number, timings);
     compare(query, exact, timings);
-    const core::ScopedTimer timer(timings, "reading once");
-    core::require(std::isfinite(sum_of_all(store_)), "descriptors are numbers");
+    {
+      const core::ScopedTimer timer(timings, "reading once");
+      core::require(std::isfinite(sum_of_all(store_)), "descriptors are numbers");
+    }
+    return std::any_of(sampled.begin(), sampled.end(),
+                       [&](const auto& found) { return found.position == exact.front().position; });
   }
 
   std::vector<retrieve::ScoredPosition> exact_search(const core::Descriptor& query,
                                                      core::Timings& timings) const {
     const core::ScopedTimer timer(timings, "search, exact");
-    return retrieve::exact_search(store_, {core::centred_unit(query.unit), store_.num_vectors()});
+    return best(
+        retrieve::exact_search(store_, {core::centred_unit(query.unit), store_.num_vectors()}));
   }
 
   std::vector<retrieve::ScoredPosition> sampled_search(const core::Descriptor& query,
+                                                       std::size_t number,
                                                        core::Timings& timings) const {
+    core::Random random(core::seed_of(static_cast<std::uint64_t>(store_.num_vectors()), "search",
+                                      static_cast<std::uint64_t>(number)));
     const core::ScopedTimer timer(timings, "search, sampled");
-    core::Random random(query.frame.value());
-    return retrieve::sampled_search(store_, {query.unit, store_.num_vectors()},
-                                    options_.config.retrieve, random);
+    return best(retrieve::sampled_search(store_, {query.unit, store_.num_vectors()},
+                                         options_.config.retrieve, random));
   }
 
   std::vector<retrieve::ScoredPosition> best(std::vector<retrieve::ScoredPosition> scored) const {
@@ -160,10 +144,9 @@ class SearchBench {
   }
 
   const Options& options_;
-  std::vector<cv::Mat> images_;
   std::unique_ptr<describe::Describer> describer_;
+  pipeline::ViewPool pool_;
   retrieve::SegmentedStore store_;
-  int num_found_ = 0;  // queries whose most similar view the sampled search has found
 };
 
 void measure(Options& options) {
@@ -181,7 +164,10 @@ std::function<void()> set_up(CLI::App& app) {
   app.description(
       "What finding a view among many costs, by step, on one core. The stored views are the "
       "sources'\n"
-      "images and, when these are used up, random crops of them; the queries are other crops.");
+      "images and, when these are used up, random crops of them; the queries are other crops, "
+      "spread "
+      "evenly. Describing\n"
+      "is timed on the whole images that the queries are crops of, when all are read.");
   app.add_option("SOURCE", options->sources, "recordings and twin: buildings")->required();
   app.add_option("--sizes", options->sizes, "of the store, views")
       ->check(CLI::Range(1, 10'000'000))

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +17,10 @@
 #include <samewhere/core/program.hpp>
 #include <samewhere/pipeline/blind_spot.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
+#include <samewhere/pipeline/paper_curves.hpp>
 #include <samewhere/pipeline/paper_runs.hpp>
 #include <samewhere/pipeline/paper_tables.hpp>
+#include <samewhere/pipeline/view_pool.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -44,7 +47,13 @@ class PaperOutput {
     blocks_.push_back(block);
     write("searches.csv", pipeline::searches_csv(blocks_));
     write("times.csv", pipeline::times_csv(blocks_));
-    write(pipeline::curves_file_name(block), pipeline::curves_svg(block));
+  }
+
+  // The blocks of one recording.
+  void add_curves(const std::vector<pipeline::PaperBlock>& blocks) const {
+    const pipeline::PaperBlock& any = blocks.front();
+    write("pr-" + pipeline::file_stem(any.recording, any.window_frames) + ".svg",
+          pipeline::curves_svg(blocks));
   }
 
   void add(const std::vector<pipeline::BlindSpotPoint>& points, const retrieve::Config& config) {
@@ -71,40 +80,52 @@ class PaperOutput {
   std::string text_;
 };
 
-// A config for each source; throws before any work is done if one cannot be used.
 std::vector<pipeline::Config> configs_of(const PaperCommand& command,
                                          const pipeline::Config& config) {
   std::vector<pipeline::Config> configs;
-  for (const std::string& source : command.sources) {
+  for (const std::string& source : command.sources)
     configs.push_back(pipeline::with_source(config, source));
-    pipeline::require_place_truth(configs.back());
-  }
   return configs;
 }
 
+// The pool for stores of up to this many views, 0: none is wanted.
+std::optional<pipeline::ViewPoolMaker> pool_maker(
+    int num_views, const std::vector<pipeline::OpenRecording>& recordings,
+    describe::Describer& describer) {
+  constexpr int kNumQueries = 200;
+  if (num_views == 0) return std::nullopt;
+  int num_frames = 0;
+  for (const auto& recording : recordings) num_frames += recording.num_frames;
+  return std::optional<pipeline::ViewPoolMaker>(
+      std::in_place, describer, num_frames,
+      pipeline::PoolSize{.num_stored = num_views, .num_queries = kNumQueries});
+}
+
 // False: interrupted.
-bool measure_tables(const pipeline::Config& config,
-                    const std::vector<pipeline::NamedDescriber>& describers, PaperOutput& output) {
-  const auto recording = pipeline::describe_recording(config, describers);
+bool measure_tables(pipeline::OpenRecording opened,
+                    const std::vector<pipeline::NamedDescriber>& describers,
+                    const pipeline::SeePicture& also_see, PaperOutput& output) {
+  const pipeline::Config config = opened.config;
+  const auto recording = pipeline::describe_recording(std::move(opened), describers, also_see);
   if (!recording) return false;
+  std::vector<pipeline::PaperBlock> blocks;
   for (const auto& views : recording->by_describer) {
     const auto block = pipeline::run_paper_plan(*recording, views, config, {});
     if (!block) return false;
     output.add(*block);
+    blocks.push_back(*block);
   }
+  output.add_curves(blocks);
   return true;
 }
 
 // False: interrupted.
-bool measure_blind_spot(const std::vector<pipeline::Config>& configs, int num_views,
-                        describe::Describer& describer, PaperOutput& output) {
-  const retrieve::Config& search = configs.front().retrieve;
+bool measure_blind_spot(const pipeline::ViewPool& pool, const retrieve::Config& search,
+                        PaperOutput& output) {
   std::vector<int> num_draws{10, search.num_draws, 70};
   std::sort(num_draws.begin(), num_draws.end());
   num_draws.erase(std::unique(num_draws.begin(), num_draws.end()), num_draws.end());
-  const auto pool = pipeline::make_view_pool(configs, describer, num_views);
-  if (!pool) return false;
-  const auto points = pipeline::measure_blind_spot(*pool, search, num_draws);
+  const auto points = pipeline::measure_blind_spot(pool, search, num_draws);
   if (points) output.add(*points, search);
   return points.has_value();
 }
@@ -114,15 +135,20 @@ int execute(const PaperCommand& command) {
   const pipeline::PaperTableNumbers numbers = pipeline::parse_table_numbers(command.tables);
   const pipeline::Config config = load(command.config);
   const auto describers = pipeline::make_describers(command.describers, config);
-  const std::vector<pipeline::Config> configs = configs_of(command, config);
+  // all are open, and so known to be of use, before any work is done
+  auto recordings = pipeline::open_recordings(configs_of(command, config));
+  auto maker = pool_maker(command.blind_spot_views, recordings, *describers.front().describer);
+  const pipeline::SeePicture to_pool = [&](const cv::Mat& picture) {
+    if (maker) maker->add(picture);
+  };
   PaperOutput output(command.out, numbers);
-  for (const auto& each : configs) {
-    if (!measure_tables(each, describers, output)) return core::kInterruptedExit;
+  for (auto& recording : recordings) {
+    if (!measure_tables(std::move(recording), describers, to_pool, output))
+      return core::kInterruptedExit;
   }
-  if (command.blind_spot_views == 0) return core::kDone;
-  const bool is_done =
-      measure_blind_spot(configs, command.blind_spot_views, *describers.front().describer, output);
-  return is_done ? core::kDone : core::kInterruptedExit;
+  if (!maker) return core::kDone;
+  const pipeline::ViewPool pool = std::move(*maker).pool();
+  return measure_blind_spot(pool, config.retrieve, output) ? core::kDone : core::kInterruptedExit;
 }
 
 void add_paper_command(CLI::App& bench, int& exit_code) {
@@ -145,7 +171,8 @@ void add_paper_command(CLI::App& bench, int& exit_code) {
       ->check(CLI::Range(100, 1'000'000));
   sub->add_option(
       "--out", command->out,
-      "folder for the figures as CSV and the curves as SVG; without it none is written");
+      "folder for the figures as CSV and the curves as SVG, one picture a recording; without it "
+      "none is written");
   add_config_options(*sub, command->config);
   sub->footer(
       "Examples:\n"

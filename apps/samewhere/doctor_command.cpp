@@ -79,24 +79,43 @@ std::vector<report::Figure> describer_figures(const describe::Config& config) {
   const double preprocess_ms = median_ms([&] { describe::preprocess(picture, config); });
   const double whole_ms = median_ms([&] { describer->describe(frame, picture); });
   const auto length = describer->describe(frame, picture).unit.size();
-  std::vector<report::Figure> figures;
-  if (config.method == describe::Method::kAutoencoder) {
-    figures.push_back({"network", describe::find_network(config.network).string()});
+  const bool is_network = config.method == describe::Method::kAutoencoder;
+  return {
+      {"view described by",
+       is_network ? describe::find_network(config.network).string() : std::string("HOG")},
+      {"  descriptor", fmt::format("{} numbers, describer {:016x}", length, describer->checksum())},
+      {"  time", fmt::format("{:.1f} ms preprocessing + {:.1f} ms description (640x480, median of "
+                             "50)",
+                             preprocess_ms, whole_ms - preprocess_ms)}};
+}
+
+bool is_there(const std::string& network) {
+  try {
+    describe::find_network(network);
+  } catch (const core::InputError&) {
+    return false;
   }
-  figures.push_back(
-      {"descriptor", fmt::format("{} numbers, describer {:016x}", length, describer->checksum())});
-  figures.push_back(
-      {"time to describe a view",
-       fmt::format("{:.1f} ms preprocessing + {:.1f} ms description (640x480, median of 50)",
-                   preprocess_ms, whole_ms - preprocess_ms)});
-  return figures;
+  return true;
+}
+
+// HOG, and the network if it is there or asked for.
+std::vector<describe::Config> describers(const describe::Config& config) {
+  std::vector<describe::Config> all(1, config);
+  all.front().method = describe::Method::kHog;
+  if (config.method == describe::Method::kAutoencoder || is_there(config.network)) {
+    all.push_back(config);
+    all.back().method = describe::Method::kAutoencoder;
+  }
+  return all;
 }
 
 void print(const pipeline::Config& config) {
   std::vector<report::Figure> figures = system_figures();
   try {
-    const auto measured = describer_figures(config.describe);
-    figures.insert(figures.end(), measured.begin(), measured.end());
+    for (const describe::Config& each : describers(config.describe)) {
+      const auto measured = describer_figures(each);
+      figures.insert(figures.end(), measured.begin(), measured.end());
+    }
   } catch (const core::InputError&) {
     print_figures(figures);  // the machine is known even if the describer cannot be made
     throw;
@@ -113,8 +132,9 @@ void add_doctor_command(CLI::App& app) {
   add_config_options(*sub, *config);
   sub->footer(
       "Examples:\n"
-      "  samewhere doctor\n"
-      "  samewhere doctor --set describe.method=autoencoder --set describe.network=my.onnx");
+      "  samewhere doctor                                the speed of HOG, and of the shipped "
+      "network if it is there\n"
+      "  samewhere doctor --set describe.network=my.onnx that of another network");
   sub->callback([config] { print(load(*config)); });
 }
 

@@ -12,6 +12,14 @@ class Commands : public testing::Test {
  protected:
   Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
   std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
+  // The checksum of HOG, in 16 digits.
+  std::string describer_of_doctor() const {
+    const std::string before = "numbers, describer ";
+    const std::string out = run("doctor").out;
+    const std::size_t at = out.find(before);
+    EXPECT_NE(at, std::string::npos) << out;
+    return at == std::string::npos ? "" : out.substr(at + before.size(), 16);
+  }
 
   input::TestFolder folder_;
 };
@@ -56,8 +64,9 @@ TEST_F(Commands, TheCommittedConfigFilesAreWhatTheProgramHas) {
 TEST_F(Commands, DoctorPrintsWhatAReportOfAFaultNeeds) {
   const Outcome doctor = run("doctor");
   ASSERT_EQ(doctor.exit_code, 0) << doctor.err;
-  for (const char* row : {"samewhere ", "build ", "OpenCV ", "Eigen ", "Ceres ", "threads ",
-                          "networks run by ", "rendered pictures ", "descriptor ", " ms "}) {
+  for (const char* row :
+       {"samewhere ", "build ", "OpenCV ", "Eigen ", "Ceres ", "threads ", "networks run by ",
+        "rendered pictures ", "view described by", "HOG", "descriptor ", " ms "}) {
     EXPECT_NE(doctor.out.find(row), std::string::npos) << row << "\n" << doctor.out;
   }
 }
@@ -70,6 +79,19 @@ TEST_F(Commands, DoctorNamesANetworkThatCannotBeUsedAfterWhatItKnows) {
   EXPECT_NE(doctor.out.find("OpenCV"), std::string::npos);
   EXPECT_NE(doctor.err.find("net.onnx: is cut short or no ONNX file"), std::string::npos);
   EXPECT_EQ(std::count(doctor.err.begin(), doctor.err.end(), '\n'), 1) << doctor.err;
+}
+
+TEST_F(Commands, DoctorTimesEveryDescriberThereIs) {
+  const auto num_described = [](const std::string& text) {
+    std::size_t num = 0;
+    for (std::size_t at = text.find("view described by"); at != std::string::npos;
+         at = text.find("view described by", at + 1))
+      ++num;
+    return num;
+  };
+  EXPECT_EQ(num_described(run("doctor --set describe.network=nowhere.onnx").out), 1U);
+  const bool is_shipped = std::filesystem::exists(SAMEWHERE_REPOSITORY "/models/autoencoder.onnx");
+  EXPECT_EQ(num_described(run("doctor").out), is_shipped ? 2U : 1U);
 }
 
 TEST_F(Commands, RunEvalAndASecondRunAgree) {
@@ -87,6 +109,7 @@ TEST_F(Commands, RunEvalAndASecondRunAgree) {
     if (name == "timing.json") continue;
     EXPECT_EQ(core::read_file(entry.path()), core::read_file(path("b") / name)) << name;
   }
+  EXPECT_NE(first.out.find(describer_of_doctor() + ", hog"), std::string::npos) << first.out;
   const Outcome eval = run("eval " + quoted(path("a")));
   EXPECT_EQ(eval.exit_code, 0) << eval.err;
   const auto ate = eval.out.find("ATE RMSE");
@@ -107,6 +130,7 @@ TEST_F(Commands, LoopsWritesTheFilesThatOthersRead) {
   EXPECT_TRUE(std::filesystem::exists(path("loops") / "accepted.txt"));
   EXPECT_TRUE(std::filesystem::exists(path("loops") / "loops.json"));
   EXPECT_NE(outcome.out.find("AUC"), std::string::npos);
+  EXPECT_NE(outcome.out.find(describer_of_doctor() + ", hog"), std::string::npos) << outcome.out;
   EXPECT_EQ(run("eval " + quoted(path("loops"))).exit_code, 0);
 }
 

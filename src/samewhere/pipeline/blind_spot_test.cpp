@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/pipeline/blind_spot.hpp>
@@ -41,24 +40,39 @@ TEST(BlindSpot, IsAsLargeAsTheFormulaSays) {
   }
 }
 
-TEST(BlindSpot, WhatIsBelowTheThresholdIsNotAskedFor) {
+TEST(BlindSpot, WhatDoesNotExceedTheThresholdIsMissedThoughItsQueueIsDrawn) {
   ViewPool pool = pool_of(100);
   for (std::size_t i = 0; i < 50; ++i)
     for (float& value : pool.queries[i].unit) value = 0.0F;  // a black view is like none
   const auto points = measure_blind_spot(pool, {}, {1000});
   ASSERT_TRUE(points.has_value());
-  EXPECT_EQ(points->front().num_queries, 50);
-  EXPECT_EQ(points->front().measured, 0.0);
-  retrieve::Config config;
-  config.min_similarity = 1.5;
-  EXPECT_THROW(measure_blind_spot(pool, config, {1000}), core::InputError);
+  EXPECT_EQ(points->front().num_queries, 100);
+  EXPECT_EQ(points->front().measured, 0.5);
+  EXPECT_LT(points->front().expected, 1e-9);
+}
+
+TEST(BlindSpot, WhatOthersSurpassIsMissedThoughItsQueueIsDrawn) {
+  // The view that is most like the query by NCC is the fourth by cosine: a common offset, which NCC
+  // takes away, makes the other three more similar.
+  ViewPool pool;
+  const std::vector<float> query{3, 1, -1, 0};
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    std::vector<float> vector{0, 0, 0, 1};
+    if (i < 10) vector = {5, 3, 1, 2};           // the query and an offset: NCC 1, cosine .82
+    if (i % 30 == 20) vector = {3, 1, -1, .5F};  // cosine .99
+    pool.stored.push_back({core::FrameId(i), core::unit(vector), 1});
+  }
+  pool.queries.push_back({core::FrameId(0), core::unit(query), 1});
+  EXPECT_EQ(measure_blind_spot(pool, {}, {1000})->front().measured, 1.0);
+  EXPECT_EQ(measure_blind_spot(pool, {.num_candidates = 4}, {1000})->front().measured, 0.0);
 }
 
 TEST(BlindSpot, IsDrawnAndSaidInOneSentence) {
   const std::vector<BlindSpotPoint> points{{100, 50, 0.005, 9, 0.01}, {1000, 50, 0.605, 9, 0.612}};
-  EXPECT_THAT(blind_spot_sentence(points, 50),
-              HasSubstr("Among 1000 views, 50 draws miss the queue of the most similar one "
-                        "with a chance of 60.5 % (measured: 61.2 %)"));
+  EXPECT_THAT(
+      blind_spot_sentence(points, 50),
+      HasSubstr("Among 1000 views, L = 50 misses the right queue in 61.2 % of the searches; "
+                "60.5 % by the draws alone."));
   const std::string svg = blind_spot_svg(points, {});
   EXPECT_THAT(svg, HasSubstr("L = 50, formula"));
   EXPECT_THAT(svg, HasSubstr("L = 50, measured"));

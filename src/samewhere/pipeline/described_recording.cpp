@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 #include <string_view>
@@ -12,11 +14,13 @@
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
 #include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/spread.hpp>
 
 namespace samewhere::pipeline {
 namespace {
 
 constexpr const char* kHogName = "hog";
+constexpr int kMaxTimed = 400;
 
 std::string network_name(const std::string& file) {
   return std::filesystem::path(file).stem().string();
@@ -57,19 +61,63 @@ core::Truth place_truth(const core::Source& source, const Config& config) {
   return truth;
 }
 
-void describe_frame(const core::Frame& frame, const NamedDescriber& by, DescribedViews& views) {
+// A frame whose description is timed at the end.
+struct KeptPicture {
+  core::FrameId frame;
+  cv::Mat picture;
+};
+
+std::vector<double> description_times_ms(const std::vector<KeptPicture>& kept,
+                                         describe::Describer& describer) {
+  constexpr const char* kDescribe = "describe";
   core::Timings timings;
-  {
-    const core::ScopedTimer timer(timings, "describe");
-    views.views.push_back(by.describer->describe(frame.id, frame.images.front()));
+  if (!kept.empty()) describer.describe(kept.front().frame, kept.front().picture);  // warm
+  for (const KeptPicture& each : kept) {
+    const core::ScopedTimer timer(timings, kDescribe);
+    describer.describe(each.frame, each.picture);
   }
-  views.durations_ms.push_back(timings.durations_ms().at("describe").front());
+  return kept.empty() ? std::vector<double>() : timings.durations_ms().at(kDescribe);
 }
 
 // The spec tells two twins of one preset apart; the name of a folder is enough for a recording.
 std::string recording_name(const Config& config, const core::SourceInfo& info) {
   constexpr std::string_view kTwin = "twin:";
   return config.source.starts_with(kTwin) ? config.source.substr(kTwin.size()) : info.name;
+}
+
+OpenRecording open_recording(const Config& config) {
+  auto source = open_source_with_truth(config);
+  const core::SourceInfo info = source->info();
+  core::Truth truth = place_truth(*source, config);
+  return {.config = with_window_in_frames(config, info),
+          .name = recording_name(config, info),
+          .num_frames = info.num_frames,
+          .source = std::move(source),
+          .truth = std::move(truth)};
+}
+
+// Reads all of it; returns the pictures to be timed. Nothing after Ctrl-C.
+std::optional<std::vector<KeptPicture>> read_and_describe(
+    OpenRecording& recording, const std::vector<NamedDescriber>& describers,
+    const SeePicture& also_see, DescribedRecording& described) {
+  const int num_timed = std::min(recording.num_frames, kMaxTimed);
+  const auto source = input::prefetched(std::move(recording.source));
+  core::Progress progress(recording.name + ": frames described", recording.num_frames);
+  std::vector<KeptPicture> kept;
+  int num_done = 0;
+  while (const std::optional<core::Frame> frame = source->next()) {
+    if (core::is_interrupted()) return std::nullopt;
+    const cv::Mat& picture = frame->images.front();
+    for (std::size_t i = 0; i < describers.size(); ++i) {
+      described.by_describer[i].views.push_back(
+          describers[i].describer->describe(frame->id, picture));
+    }
+    if (also_see) also_see(picture);
+    if (num_spread_on(num_done, recording.num_frames, num_timed) > 0)
+      kept.push_back({frame->id, picture.clone()});
+    progress.update(++num_done);
+  }
+  return kept;
 }
 
 }  // namespace
@@ -106,27 +154,50 @@ Config with_source(Config config, const std::string& source_at_window) {
   return config;
 }
 
-void require_place_truth(const Config& config) { place_truth(*open_source(config), config); }
-
-std::optional<DescribedRecording> describe_recording(
-    const Config& config, const std::vector<NamedDescriber>& describers) {
-  const auto source = input::prefetched(open_source(config));
-  const core::SourceInfo info = source->info();
-  DescribedRecording recording{
-      .name = recording_name(config, info),
-      .window_frames = with_window_in_frames(config, info).retrieve.window_frames,
-      .truth = place_truth(*source, config),
-      .by_describer = {}};
-  for (const auto& by : describers) recording.by_describer.push_back({by.name, {}, {}});
-  core::Progress progress(recording.name + ": frames described", info.num_frames);
-  int num_done = 0;
-  while (const std::optional<core::Frame> frame = source->next()) {
-    if (core::is_interrupted()) return std::nullopt;
-    for (std::size_t i = 0; i < describers.size(); ++i)
-      describe_frame(*frame, describers[i], recording.by_describer[i]);
-    progress.update(++num_done);
+std::vector<OpenRecording> open_recordings(const std::vector<Config>& configs) {
+  std::vector<OpenRecording> recordings;
+  std::set<std::string> stems;
+  for (const Config& config : configs) {
+    recordings.push_back(open_recording(config));
+    const OpenRecording& last = recordings.back();
+    const int window_frames = last.config.retrieve.window_frames;
+    if (!stems.insert(file_stem(last.name, window_frames)).second) {
+      throw core::InputError(fmt::format(
+          "{}: two recordings are called {} with a window of {} frames, expected a different name "
+          "or window for each",
+          config.source, last.name, window_frames));
+    }
   }
-  return recording;
+  return recordings;
+}
+
+std::string file_stem(const std::string& recording, int window_frames) {
+  std::string stem = fmt::format("{}-{}", recording, window_frames);
+  for (char& c : stem) {
+    const bool is_plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+    if (!is_plain) c = '-';
+  }
+  return stem;
+}
+
+std::optional<DescribedRecording> describe_recording(OpenRecording recording,
+                                                     const std::vector<NamedDescriber>& describers,
+                                                     const SeePicture& also_see) {
+  DescribedRecording described{.name = recording.name,
+                               .window_frames = recording.config.retrieve.window_frames,
+                               .truth = std::move(recording.truth),
+                               .timed_frames = {},
+                               .by_describer = {}};
+  for (const auto& by : describers)
+    described.by_describer.push_back({by.name, by.describer->checksum(), {}, {}});
+  const auto kept = read_and_describe(recording, describers, also_see, described);
+  if (!kept) return std::nullopt;
+  for (const KeptPicture& each : *kept)
+    described.timed_frames.push_back(static_cast<int>(each.frame.index()));
+  for (std::size_t i = 0; i < describers.size(); ++i)
+    described.by_describer[i].durations_ms = description_times_ms(*kept, *describers[i].describer);
+  return described;
 }
 
 }  // namespace samewhere::pipeline

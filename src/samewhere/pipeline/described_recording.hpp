@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <opencv2/core/mat.hpp>
+
 #include <samewhere/core/descriptor.hpp>
+#include <samewhere/core/source.hpp>
 #include <samewhere/core/truth.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/pipeline/config.hpp>
@@ -28,29 +33,49 @@ std::vector<NamedDescriber> make_describers(const std::string& list, const Confi
 // window that is out of range.
 Config with_source(Config config, const std::string& source_at_window);
 
+// A recording whose loops are known, open and not yet read.
+struct OpenRecording {
+  Config config;  // with its window in frames
+  std::string name;
+  int num_frames = 0;
+  std::unique_ptr<core::Source> source;
+  core::Truth truth;  // has places
+};
+
+// Opens each source once, and has its truth: what a twin building has to compute for that is
+// computed now. Throws InputError naming the source if it cannot be opened or its truth says
+// nothing about places, and on two recordings of one name and window, whose figures nobody could
+// tell apart; Interrupted after Ctrl-C.
+std::vector<OpenRecording> open_recordings(const std::vector<Config>& configs);
+
+// What files on this recording are called: name and window, in letters, digits and -_. only.
+std::string file_stem(const std::string& recording, int window_frames);
+
 // All views of a recording as one describer sees them.
 struct DescribedViews {
   std::string describer;
+  std::uint64_t checksum = 0;           // of the describer
   std::vector<core::Descriptor> views;  // one a frame, in their order
-  std::vector<double> durations_ms;     // of preprocessing and description
+  std::vector<double> durations_ms;     // of preprocessing and description of the timed frames
 };
 
-// A recording whose loops are known.
+// A recording that was read.
 struct DescribedRecording {
   std::string name;
   int window_frames = 0;
-  core::Truth truth;  // has places
+  core::Truth truth;              // has places
+  std::vector<int> timed_frames;  // ascending
   std::vector<DescribedViews> by_describer;
 };
 
-// Throws InputError naming the source if it cannot be opened or its truth says nothing about
-// places. Reads no frame.
-void require_place_truth(const Config& config);
+using SeePicture = std::function<void(const cv::Mat& picture)>;
 
-// Reads the source that the config names once and describes each frame by each describer, with a
-// progress line on stderr. Nothing after Ctrl-C. Throws InputError as require_place_truth(), and on
-// a bad frame.
-std::optional<DescribedRecording> describe_recording(const Config& config,
-                                                     const std::vector<NamedDescriber>& describers);
+// Reads the recording and describes each frame by each describer, with a progress line on stderr;
+// `also_see` is shown each picture once. Descriptions are timed after that, when nobody reads or
+// renders any more: those of up to 400 frames, spread evenly, by one describer after the other.
+// Nothing after Ctrl-C. Throws InputError on a bad frame.
+std::optional<DescribedRecording> describe_recording(OpenRecording recording,
+                                                     const std::vector<NamedDescriber>& describers,
+                                                     const SeePicture& also_see = nullptr);
 
 }  // namespace samewhere::pipeline

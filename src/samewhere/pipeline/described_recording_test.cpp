@@ -1,6 +1,13 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/input/test_folder.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
 
 namespace samewhere::pipeline {
@@ -28,6 +35,60 @@ TEST(WithSource, WithoutAWindowTheConfigHasIt) {
     EXPECT_EQ(same.retrieve.window_frames, 7);
   }
   EXPECT_THROW(with_source(config, "/data/a@99999999999999999999"), core::InputError);
+}
+
+// Two laps past three walls, as images.
+void write_walk(const input::TestFolder& folder, const std::string& name, int num_laps) {
+  std::string truth;
+  for (int frame = 0; frame < 3 * num_laps; ++frame) {
+    folder.write_png(name + "/" + std::to_string(frame) + ".png",
+                     cv::Mat(30, 40, CV_8U, cv::Scalar(50 * (frame % 3))));
+    for (int other = 0; other < 3 * num_laps; ++other)
+      truth += frame % 3 == other % 3 ? "1 " : "0 ";
+    truth += "\n";
+  }
+  folder.write(name + "/same_place.txt", truth);
+}
+
+TEST(OpenRecordings, RefusesTwoThatNobodyCouldTellApart) {
+  const input::TestFolder folder;
+  write_walk(folder, "a/walk", 2);
+  write_walk(folder, "b/walk", 2);
+  const auto config = [&](const std::string& source) {
+    return with_source(profile("paper"), (folder.root() / source).string());
+  };
+  EXPECT_EQ(open_recordings({config("a/walk@2"), config("a/walk@3")}).size(), 2u);
+  EXPECT_THROW(open_recordings({config("a/walk@2"), config("b/walk@2")}), core::InputError);
+  EXPECT_THROW(open_recordings({config("a/walk@2"), config("nowhere")}), core::InputError);
+}
+
+TEST(FileStem, HasPlainLettersOnly) {
+  EXPECT_EQ(file_stem("hotel?seed=3&similarity=1", 2), "hotel-seed-3-similarity-1-2");
+}
+
+TEST(DescribeRecording, DescribesEachFrameAndTimesUpTo400SpreadEvenly) {
+  const input::TestFolder folder;
+  write_walk(folder, "short", 2);
+  write_walk(folder, "long", 160);
+  const Config config = profile("paper");
+  std::vector<Config> configs;
+  for (const char* name : {"short@2", "long@2"})
+    configs.push_back(with_source(config, (folder.root() / name).string()));
+  std::vector<OpenRecording> recordings = open_recordings(configs);
+  for (const int num_frames : {6, 480}) {
+    int num_seen = 0;
+    const auto described =
+        describe_recording(std::move(recordings[num_frames == 6 ? 0 : 1]),
+                           make_describers("hog", config), [&](const cv::Mat&) { ++num_seen; });
+    ASSERT_TRUE(described.has_value());
+    EXPECT_EQ(num_seen, num_frames);
+    const DescribedViews& views = described->by_describer.front();
+    EXPECT_EQ(views.views.size(), static_cast<std::size_t>(num_frames));
+    EXPECT_NE(views.checksum, 0u);
+    EXPECT_EQ(described->timed_frames.size(), std::min<std::size_t>(400, views.views.size()));
+    EXPECT_EQ(views.durations_ms.size(), described->timed_frames.size());
+    EXPECT_GT(described->timed_frames.back(), num_frames - 3);
+  }
 }
 
 TEST(MakeDescribers, AreNamedAndNeverTwoTheSame) {

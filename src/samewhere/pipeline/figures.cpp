@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <map>
 
 #include <fmt/format.h>
@@ -88,6 +89,13 @@ RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
         truth.impostors, as_matches(findings.accepted), findings.window_frames);
   }
   return evaluation;
+}
+
+Figure describer_figure(const describe::Config& config, std::uint64_t checksum) {
+  const std::string what = config.method == describe::Method::kHog
+                               ? "hog"
+                               : std::filesystem::path(config.network).filename().string();
+  return {"describer", fmt::format("{:016x}, {}", checksum, what)};
 }
 
 std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {

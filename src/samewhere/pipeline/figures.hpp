@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include <samewhere/core/truth.hpp>
+#include <samewhere/describe/config.hpp>
 #include <samewhere/evaluate/loop_check.hpp>
 #include <samewhere/evaluate/precision_recall.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
@@ -62,6 +64,9 @@ struct RecognitionEvaluation {
 // missed.
 RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
                                            const core::Truth& truth);
+
+// Which describer a run used: its checksum, and "hog" or the name of the network's file.
+report::Figure describer_figure(const describe::Config& config, std::uint64_t checksum);
 
 // As shown to a person.
 std::vector<report::Figure> figures_of(const SlamEvaluation& evaluation);

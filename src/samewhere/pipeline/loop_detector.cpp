@@ -42,9 +42,7 @@ std::vector<core::LedgerRow> LoopDetector::judge(const std::vector<core::Candida
   for (core::Candidate candidate : candidates) {
     candidate.id = core::CandidateId(num_candidates_++);
     rows.push_back({candidate, verdict_on(candidate, view, measure_odometry)});
-  }
-  for (const auto& row : rows) {
-    if (core::is_loop(row.verdict)) history_.last_loop_query = view.frame;
+    if (core::is_loop(rows.back().verdict)) history_.last_loop_query = view.frame;
   }
   views_.emplace(view.frame, view);
   return rows;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -31,6 +32,9 @@ class LoopDetector {
   std::vector<core::LedgerRow> look(const cv::Mat& image, const features::View& view,
                                     const MeasureOdometry& measure_odometry,
                                     core::Timings& timings);
+
+  // Of the describer: says which network it is.
+  std::uint64_t describer_checksum() const { return describer_->checksum(); }
 
   // The steps of look(). Each has its own state and gets the frames in order; so each may run in a
   // thread of its own, with the same result.

@@ -16,6 +16,14 @@ std::unique_ptr<core::Source> open_source(const Config& config) {
                                            : input::open_source(config.source, config.input);
 }
 
+std::unique_ptr<core::Source> open_source_with_truth(const Config& config) {
+  if (!twin::is_twin_spec(config.source)) return open_source(config);
+  const auto walk =
+      std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
+  twin::watched_truth(*walk);
+  return twin::open_twin(walk, config.twin);
+}
+
 void require_slam_input(const core::SourceInfo& info, const Config& config) {
   constexpr const char* kOtherwise = "(`samewhere loops` works without)";
   if (!info.is_calibrated) {

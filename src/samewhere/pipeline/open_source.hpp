@@ -11,6 +11,10 @@ namespace samewhere::pipeline {
 // A recording or a twin building, by what config.source says. Throws InputError.
 std::unique_ptr<core::Source> open_source(const Config& config);
 
+// The same for who asks for its truth: what a twin building has to compute for that is computed
+// now, with a progress line on stderr. Throws InputError, and Interrupted after Ctrl-C.
+std::unique_ptr<core::Source> open_source_with_truth(const Config& config);
+
 // Throws InputError if the source lacks the depth or the camera that SLAM needs.
 void require_slam_input(const core::SourceInfo& info, const Config& config);
 

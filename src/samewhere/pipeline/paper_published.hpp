@@ -30,4 +30,16 @@ inline constexpr std::array<PublishedSequence, 3> kPublishedSequences = {{
      "36/9"},
 }};
 
+inline constexpr int kPublishedDrawsOfUse = 50;  // L with which the method is used
+
+// Recall and precision that its text names: full precision up to a recall of about .35; at .70
+// above .80 on Lip6 and Bicocca, above .75 on fr3_loh.
+struct PublishedPoint {
+  double recall;
+  double precision;
+};
+
+inline constexpr std::array<PublishedPoint, 3> kPublishedPoints = {
+    {{.35, 1.0}, {.70, .80}, {.70, .75}}};
+
 }  // namespace samewhere::pipeline

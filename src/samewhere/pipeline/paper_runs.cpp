@@ -35,8 +35,8 @@ PaperRun run_once(const DescribedRecording& recording, const DescribedViews& vie
   core::Timings timings;
   const std::vector<evaluate::Match> matches = best_matches(views.views, config, timings);
   PaperRun run;
-  if (config.retrieve.search == retrieve::Search::kSampled)
-    run.num_draws = config.retrieve.num_draws;
+  run.search = config.retrieve.search;
+  run.num_draws = config.retrieve.num_draws;
   run.seed = config.seed;
   run.result =
       evaluate::precision_recall(*recording.truth.places, matches, config.retrieve.window_frames);
@@ -54,9 +54,11 @@ std::vector<Config> configs_of(Config config, const PaperPlan& plan) {
     config.retrieve.num_draws = num_draws;
     for (config.seed = 0; config.seed < plan.num_seeds; ++config.seed) configs.push_back(config);
   }
-  config.retrieve.search = retrieve::Search::kExact;
   config.seed = 0;
-  configs.push_back(config);
+  for (const auto search : {retrieve::Search::kEveryQueue, retrieve::Search::kExact}) {
+    config.retrieve.search = search;
+    configs.push_back(config);
+  }
   return configs;
 }
 
@@ -104,9 +106,11 @@ std::optional<PaperBlock> run_paper_plan(const DescribedRecording& recording,
   config.retrieve.window_frames = recording.window_frames;
   PaperBlock block{.recording = recording.name,
                    .describer = views.describer,
+                   .describer_checksum = views.checksum,
                    .window_frames = recording.window_frames,
                    .min_similarity = config.verify.min_similarity,
                    .pause_frames = config.verify.pause_frames,
+                   .timed_frames = recording.timed_frames,
                    .describe_ms = views.durations_ms,
                    .runs = {}};
   const std::vector<Config> configs = configs_of(config, plan);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <samewhere/core/timing.hpp>
 #include <samewhere/evaluate/precision_recall.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
+#include <samewhere/retrieve/config.hpp>
 
 namespace samewhere::pipeline {
 
@@ -24,7 +26,8 @@ struct PausedLoops {
 
 // One search of every view among the older ones.
 struct PaperRun {
-  std::optional<int> num_draws;  // nothing: exact search
+  retrieve::Search search = retrieve::Search::kSampled;
+  int num_draws = 0;  // of a sampled search
   int seed = 0;
   evaluate::PrecisionRecall result;
   PausedLoops loops;
@@ -36,15 +39,19 @@ struct PaperRun {
 struct PaperBlock {
   std::string recording;
   std::string describer;
+  std::uint64_t describer_checksum = 0;
   int window_frames = 0;
-  double min_similarity = 0.0;  // of the loops
-  int pause_frames = 0;         // of the loops
+  double min_similarity = 0.0;    // of the loops
+  int pause_frames = 0;           // of the loops
+  std::vector<int> timed_frames;  // whose description was timed; as in DescribedRecording
   std::vector<double> describe_ms;
-  std::vector<PaperRun> runs;  // by number of draws, then seed; at the end the exact search
+  // By number of draws, then seed; then with every queue, which is what more draws tend to; at the
+  // end the exact search, which knows no threshold and ranks by NCC.
+  std::vector<PaperRun> runs;
 };
 
 // The most similar of each view's candidates by exact similarity (NCC), for queries that have any:
-// the published search, or the exact one, by config.retrieve and config.seed. The times of both
+// the search that config.retrieve names, by config.retrieve and config.seed. The times of both
 // steps go into `timings`, one a frame, as "search" and "exact similarity".
 std::vector<evaluate::Match> best_matches(const std::vector<core::Descriptor>& views,
                                           const Config& config, core::Timings& timings);
@@ -54,8 +61,8 @@ std::vector<evaluate::Match> best_matches(const std::vector<core::Descriptor>& v
 std::vector<evaluate::Match> accepted_with_pause(const std::vector<evaluate::Match>& matches,
                                                  const verify::Config& config);
 
-// Every search of the plan, and the exact one, on described_recording's views by one describer,
-// with a progress line on stderr. Precision and recall without the pause, loops with it
+// Every search of the plan, and the two without chance, on a described recording's views by one
+// describer, with a progress line on stderr. Precision and recall without the pause, loops with it
 // (docs/evaluation.md). Nothing after Ctrl-C.
 std::optional<PaperBlock> run_paper_plan(const DescribedRecording& recording,
                                          const DescribedViews& views, const Config& config,

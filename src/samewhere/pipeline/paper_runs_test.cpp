@@ -18,9 +18,9 @@ PaperBlock block_of(const Config& config) {
 
 TEST(PaperRuns, OfSixViewsAreWhatTheHandCounts) {
   const PaperBlock block = block_of(small_store());
-  ASSERT_EQ(block.runs.size(), 7u);
+  ASSERT_EQ(block.runs.size(), 8u);
   const PaperRun& exact = block.runs.back();
-  EXPECT_FALSE(exact.num_draws.has_value());
+  EXPECT_EQ(exact.search, retrieve::Search::kExact);
   EXPECT_NEAR(exact.result.auc, kSecondLapAuc, 1e-12);
   EXPECT_EQ(exact.result.num_with_loop, 3);
   EXPECT_EQ(exact.loops.counts.num_right, 2);
@@ -41,6 +41,19 @@ TEST(PaperRuns, ManyDrawsFindAllAndOneDrawDoesNot) {
     EXPECT_NEAR(block.runs[i + 3].result.auc, kSecondLapAuc, 1e-12) << "seed " << i;
   }
   EXPECT_LT(least, 2.0 / 3.0);
+}
+
+TEST(PaperRuns, EveryQueueIsTheLimitOfTheSamplingAndExactIsNot) {
+  // with a threshold that only the first revisit exceeds
+  Config config = small_store();
+  config.retrieve.min_similarity = 0.99;
+  const PaperBlock block = block_of(config);
+  const PaperRun& all = block.runs[6];
+  EXPECT_EQ(all.search, retrieve::Search::kEveryQueue);
+  EXPECT_NEAR(all.result.max_recall, 1.0 / 3.0, 1e-12);
+  for (std::size_t i = 3; i < 6; ++i)
+    EXPECT_EQ(block.runs[i].result.auc, all.result.auc) << "seed " << i - 3;
+  EXPECT_GT(block.runs[7].result.max_recall, all.result.max_recall) << "exact has no threshold";
 }
 
 TEST(PaperRuns, AfterALoopDetectionPauses) {

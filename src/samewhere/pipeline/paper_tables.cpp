@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <functional>
 #include <iterator>
 #include <optional>
@@ -12,7 +11,6 @@
 #include <samewhere/evaluate/statistics.hpp>
 #include <samewhere/pipeline/paper_published.hpp>
 #include <samewhere/pipeline/paper_tables.hpp>
-#include <samewhere/report/plot.hpp>
 #include <samewhere/report/table.hpp>
 
 namespace samewhere::pipeline {
@@ -21,16 +19,25 @@ namespace {
 using Row = std::vector<std::string>;
 // The runs of one column of a table: those with one number of draws, which differ by seed.
 using Column = std::vector<const PaperRun*>;
-using FigureOf = std::function<double(const PaperRun&)>;
+// Nothing: the run has no such figure.
+using FigureOf = std::function<std::optional<double>(const PaperRun&)>;
 
-std::string column_name(const std::optional<int>& num_draws) {
-  return num_draws ? std::to_string(*num_draws) : "exact";
+std::string column_name(const PaperRun& run) {
+  switch (run.search) {
+    case retrieve::Search::kExact:
+      return "exact";
+    case retrieve::Search::kEveryQueue:
+      return "all";
+    case retrieve::Search::kSampled:
+      break;
+  }
+  return std::to_string(run.num_draws);
 }
 
 std::vector<Column> columns_of(const PaperBlock& block) {
   std::vector<Column> columns;
   for (const PaperRun& run : block.runs) {
-    if (columns.empty() || columns.back().front()->num_draws != run.num_draws)
+    if (columns.empty() || column_name(*columns.back().front()) != column_name(run))
       columns.emplace_back();
     columns.back().push_back(&run);
   }
@@ -39,14 +46,16 @@ std::vector<Column> columns_of(const PaperBlock& block) {
 
 Row header_of(const std::vector<Column>& columns, const std::string& first) {
   Row header{first};
-  for (const Column& column : columns) header.push_back(column_name(column.front()->num_draws));
+  for (const Column& column : columns) header.push_back(column_name(*column.front()));
   return header;
 }
 
-evaluate::MeanDeviation over_seeds(const Column& column, const FigureOf& figure) {
+std::vector<double> over_seeds(const Column& column, const FigureOf& figure) {
   std::vector<double> values;
-  for (const PaperRun* run : column) values.push_back(figure(*run));
-  return evaluate::mean_and_deviation(values);
+  for (const PaperRun* run : column) {
+    if (const auto value = figure(*run)) values.push_back(*value);
+  }
+  return values;
 }
 
 // A row of means, and one of standard deviations under it, which a single run has not.
@@ -55,9 +64,10 @@ void add_figure(report::Table& table, const std::vector<Column>& columns, const 
   Row means{name};
   Row deviations{"  standard deviation"};
   for (const Column& column : columns) {
-    const auto [mean, deviation] = over_seeds(column, figure);
-    means.push_back(fmt::format("{:.{}f}", mean, num_digits));
-    deviations.push_back(column.size() > 1 ? fmt::format("{:.{}f}", deviation, num_digits) : "");
+    const std::vector<double> values = over_seeds(column, figure);
+    const auto [mean, deviation] = evaluate::mean_and_deviation(values);
+    means.push_back(values.empty() ? "-" : fmt::format("{:.{}f}", mean, num_digits));
+    deviations.push_back(values.size() > 1 ? fmt::format("{:.{}f}", deviation, num_digits) : "");
   }
   table.rows.push_back(means);
   table.rows.push_back(deviations);
@@ -68,11 +78,11 @@ Row published_row(const std::vector<Column>& columns, const std::string& name,
                   const std::array<double, 7>& figures, int num_digits) {
   Row row{name};
   for (const Column& column : columns) {
-    const auto num_draws = column.front()->num_draws;
+    const PaperRun& any = *column.front();
     const auto* const known =
-        std::find(kPublishedNumDraws.begin(), kPublishedNumDraws.end(), num_draws.value_or(-1));
+        std::find(kPublishedNumDraws.begin(), kPublishedNumDraws.end(), any.num_draws);
     row.push_back(
-        known == kPublishedNumDraws.end()
+        any.search != retrieve::Search::kSampled || known == kPublishedNumDraws.end()
             ? ""
             : fmt::format("{:.{}f}",
                           figures[static_cast<std::size_t>(known - kPublishedNumDraws.begin())],
@@ -94,7 +104,11 @@ std::string table_2(const std::vector<Column>& columns) {
     table.rows.push_back(
         published_row(columns, fmt::format("published AUC, {}", published.name), published.auc, 4));
   }
-  return report::as_text(table) + "a recall that a search does not reach counts as precision 0\n";
+  return report::as_text(table) +
+         "all: every queue once, what more draws tend to. exact: every vector, ranked by NCC and "
+         "without the threshold of\n"
+         "the others, so its AUC may be lower. A recall that a search does not reach counts as "
+         "precision 0.\n";
 }
 
 // The durations of one step over the frames of all seeds, ms.
@@ -108,8 +122,9 @@ Steps steps_of(const PaperBlock& block, const Column& column) {
     search.insert(search.end(), run->search_ms.begin(), run->search_ms.end());
     exact.insert(exact.end(), run->exact_similarity_ms.begin(), run->exact_similarity_ms.end());
     for (std::size_t i = 0; i < block.describe_ms.size(); ++i) {
-      together.push_back(block.describe_ms[i] + run->search_ms.at(i) +
-                         run->exact_similarity_ms.at(i));
+      const auto frame = static_cast<std::size_t>(block.timed_frames.at(i));
+      together.push_back(block.describe_ms[i] + run->search_ms.at(frame) +
+                         run->exact_similarity_ms.at(frame));
     }
   }
   return {{"preprocess and describe", block.describe_ms},
@@ -142,12 +157,16 @@ std::string table_3(const PaperBlock& block, const std::vector<Column>& columns)
     table.rows.push_back(
         published_row(columns, fmt::format("published, {}", published.name), published.ms, 2));
   }
-  return report::as_text(table);
+  return report::as_text(table) +
+         fmt::format("on one core; description timed on {} frames, apart from reading them\n",
+                     block.timed_frames.size());
 }
 
-double share_wrong(const PaperRun& run) {
+// Nothing where no loop was right or wrong: none is no perfection.
+std::optional<double> share_wrong(const PaperRun& run) {
   const int num_judged = run.loops.counts.num_right + run.loops.counts.num_wrong;
-  return num_judged > 0 ? static_cast<double>(run.loops.counts.num_wrong) / num_judged : 0.0;
+  if (num_judged == 0) return std::nullopt;
+  return static_cast<double>(run.loops.counts.num_wrong) / num_judged;
 }
 
 std::string table_6(const PaperBlock& block, const std::vector<Column>& columns) {
@@ -181,7 +200,7 @@ std::string table_6(const PaperBlock& block, const std::vector<Column>& columns)
 Row search_row(const PaperRun& run) {
   const evaluate::PrecisionRecall& result = run.result;
   const PausedLoops& loops = run.loops;
-  return {column_name(run.num_draws),
+  return {column_name(run),
           std::to_string(run.seed),
           std::to_string(result.num_queries),
           std::to_string(result.num_with_loop),
@@ -232,13 +251,14 @@ std::string paper_text(const PaperBlock& block, const PaperTableNumbers& numbers
 
 std::string searches_csv(const std::vector<PaperBlock>& blocks) {
   report::Table table{
-      {"recording", "describer", "window_frames", "draws", "seed", "queries", "with_loop", "auc",
-       "recall_at_full_precision", "precision_at_recall_35", "precision_at_recall_70",
-       "loops_right", "loops_wrong", "loops_impostors", "loops_near"},
+      {"recording", "describer", "describer_checksum", "window_frames", "draws", "seed", "queries",
+       "with_loop", "auc", "recall_at_full_precision", "precision_at_recall_35",
+       "precision_at_recall_70", "loops_right", "loops_wrong", "loops_impostors", "loops_near"},
       {}};
   for (const PaperBlock& block : blocks) {
     for (const PaperRun& run : block.runs) {
-      Row row{block.recording, block.describer, std::to_string(block.window_frames)};
+      Row row{block.recording, block.describer, fmt::format("{:016x}", block.describer_checksum),
+              std::to_string(block.window_frames)};
       const Row found = search_row(run);
       row.insert(row.end(), found.begin(), found.end());
       table.rows.push_back(row);
@@ -254,52 +274,14 @@ std::string times_csv(const std::vector<PaperBlock>& blocks) {
     for (const Column& column : columns_of(block)) {
       for (const auto& [step, durations_ms] : steps_of(block, column)) {
         const core::TimingSummary summary = core::summarize(durations_ms);
-        table.rows.push_back(
-            {block.recording, block.describer, column_name(column.front()->num_draws), step,
-             fmt::format("{:.4f}", summary.median_ms), fmt::format("{:.4f}", summary.p95_ms),
-             fmt::format("{:.4f}", summary.p99_ms)});
+        table.rows.push_back({block.recording, block.describer, column_name(*column.front()), step,
+                              fmt::format("{:.4f}", summary.median_ms),
+                              fmt::format("{:.4f}", summary.p95_ms),
+                              fmt::format("{:.4f}", summary.p99_ms)});
       }
     }
   }
   return report::as_csv(table);
-}
-
-std::string curves_svg(const PaperBlock& block) {
-  constexpr const char* kExactColour = "#c0552d";
-  report::Plot plot{.title = fmt::format("{}, {}", block.recording, block.describer),
-                    .note =
-                        "By the number of draws L, first seed; the exact search compares every "
-                        "vector and knows no threshold.",
-                    .x = {"recall", 0.0, 1.0, false},
-                    .y = {"precision", 0.0, 1.0, false},
-                    .curves = {}};
-  const std::vector<Column> columns = columns_of(block);
-  std::vector<std::string> colours = report::colours_in_order(static_cast<int>(columns.size()) - 1);
-  colours.emplace_back(kExactColour);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const PaperRun& run = *columns[i].front();
-    report::PlotCurve curve{
-        .name = fmt::format("{}, AUC {:.3f}",
-                            run.num_draws ? fmt::format("L = {}", *run.num_draws) : "exact",
-                            run.result.auc),
-        .points = {},
-        .colour = colours[i]};
-    for (const auto& point : run.result.curve)
-      curve.points.push_back({point.recall, point.precision});
-    plot.curves.push_back(curve);
-  }
-  return report::plot_svg(plot);
-}
-
-std::string curves_file_name(const PaperBlock& block) {
-  std::string name =
-      fmt::format("pr-{}-{}-{}", block.recording, block.window_frames, block.describer);
-  for (char& c : name) {
-    const bool is_plain =
-        std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
-    if (!is_plain) c = '-';
-  }
-  return name + ".svg";
 }
 
 }  // namespace samewhere::pipeline

@@ -15,18 +15,14 @@ using PaperTableNumbers = std::set<int>;
 // "2,3". Throws InputError on anything but 2, 3 and 6.
 PaperTableNumbers parse_table_numbers(const std::string& list);
 
-// For the terminal: the wanted tables, one column for each number of draws and one for the exact
-// search, means and standard deviations over the seeds, the published figures below ours.
+// For the terminal: the wanted tables, one column for each number of draws, one for every queue
+// ("all") and one for the exact search, means and standard deviations over the seeds, the published
+// figures below ours.
 std::string paper_text(const PaperBlock& block, const PaperTableNumbers& numbers);
 
-// One row for each search: what it found. As CSV.
+// One row for each search: what it found, and which describer saw the views. As CSV.
 std::string searches_csv(const std::vector<PaperBlock>& blocks);
 // One row for each step of each block and number of draws, milliseconds a frame. As CSV.
 std::string times_csv(const std::vector<PaperBlock>& blocks);
-// The precision-recall curves of one block, for the first seed and the exact search, as SVG.
-std::string curves_svg(const PaperBlock& block);
-// A file name for it: the recording, the window and the describer, with letters, digits and -_.
-// only.
-std::string curves_file_name(const PaperBlock& block);
 
 }  // namespace samewhere::pipeline

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/pipeline/paper_curves.hpp>
 #include <samewhere/pipeline/paper_tables.hpp>
 #include <samewhere/pipeline/test_described.hpp>
 
@@ -36,21 +37,20 @@ TEST(PaperTables, ShowWhatWasCountedByHand) {
   const std::string text = paper_text(sample_block(), {2, 3, 6});
   using Cells = std::vector<std::string>;
   EXPECT_THAT(text, HasSubstr("second lap, by hand: 6 frames, 3 with a loop, window 2 frames"));
-  EXPECT_EQ(cells_of(text, "Table 2: draws L"), (Cells{"500", "exact"}));
-  EXPECT_EQ(cells_of(text, "AUC"), (Cells{"0.5278", "0.5278"}));
-  EXPECT_EQ(cells_of(text, "recall at 100 % precision"), (Cells{"0.3333", "0.3333"}));
-  EXPECT_EQ(cells_of(text, "precision at recall .35"), (Cells{"0.6667", "0.6667"}));
-  EXPECT_EQ(cells_of(text, "precision at recall .70"), (Cells{"0.0000", "0.0000"}));
-  EXPECT_EQ(cells_of(text, "preprocess and describe, median"), (Cells{"2.000", "2.000"}));
-  EXPECT_EQ(cells_of(text, "right"), (Cells{"2.0", "2.0"}));
-  EXPECT_EQ(cells_of(text, "wrong"), (Cells{"1.0", "1.0"}));
-  EXPECT_EQ(cells_of(text, "  of these impostors"), (Cells{"1.0", "1.0"}));
+  EXPECT_EQ(cells_of(text, "Table 2: draws L"), (Cells{"500", "all", "exact"}));
+  EXPECT_EQ(cells_of(text, "AUC"), (Cells{"0.5278", "0.5278", "0.5278"}));
+  EXPECT_EQ(cells_of(text, "recall at 100 % precision"), (Cells{"0.3333", "0.3333", "0.3333"}));
+  EXPECT_EQ(cells_of(text, "precision at recall .35"), (Cells{"0.6667", "0.6667", "0.6667"}));
+  EXPECT_EQ(cells_of(text, "precision at recall .70"), (Cells{"0.0000", "0.0000", "0.0000"}));
+  EXPECT_EQ(cells_of(text, "preprocess and describe, median"), (Cells{"2.000", "2.000", "2.000"}));
+  EXPECT_EQ(cells_of(text, "right"), (Cells{"2.0", "2.0", "2.0"}));
+  EXPECT_EQ(cells_of(text, "wrong"), (Cells{"1.0", "1.0", "1.0"}));
+  EXPECT_EQ(cells_of(text, "  of these impostors"), (Cells{"1.0", "1.0", "1.0"}));
 }
 
 TEST(PaperTables, PublishedFiguresStandUnderTheirNumberOfDraws) {
   PaperBlock block = sample_block();
-  for (PaperRun& run : block.runs)
-    if (run.num_draws) run.num_draws = 50;
+  for (PaperRun& run : block.runs) run.num_draws = 50;
   const std::string text = paper_text(block, {2, 3});
   EXPECT_EQ(cells_of(text, "published AUC, Lip6 Indoor"), std::vector<std::string>{"0.8321"});
   EXPECT_EQ(cells_of(text, "published, Bicocca Indoor"), std::vector<std::string>{"50.52"});
@@ -77,21 +77,42 @@ TEST(PaperTables, EverySearchHasARowAndEveryStepATime) {
     return std::count(csv.begin(), csv.end(), '\n');
   };
   const std::string searches = searches_csv(blocks);
-  EXPECT_EQ(num_lines(searches), 1 + 2 * 3);
-  EXPECT_THAT(
-      searches,
-      HasSubstr("second lap,by hand,2,500,1,6,3,0.527778,0.333333,0.666667,0.000000,2,1,1,0"));
-  EXPECT_EQ(num_lines(times_csv(blocks)), 1 + 2 * 2 * 4);
+  EXPECT_EQ(num_lines(searches), 1 + 2 * 4);
+  EXPECT_THAT(searches,
+              HasSubstr("second lap,by hand,0000000000001234,2,500,1,6,3,0.527778,0.333333,"
+                        "0.666667,0.000000,2,1,1,0"));
+  EXPECT_EQ(num_lines(times_csv(blocks)), 1 + 2 * 3 * 4);
 }
 
-TEST(PaperTables, CurvesComeWithAPlainFileName) {
+TEST(PaperTables, NoLoopIsNoPerfection) {
+  PaperBlock block = sample_block();
+  for (PaperRun& run : block.runs) run.loops.counts = {};
+  EXPECT_EQ(cells_of(paper_text(block, {6}), "wrong / (right + wrong)"),
+            (std::vector<std::string>{"-", "-", "-"}));
+}
+
+TEST(PaperTables, TimesTogetherAreThoseOfTheTimedFrames) {
+  PaperBlock block = sample_block();
+  ASSERT_EQ(block.timed_frames, (std::vector<int>{0, 2, 4}));
+  for (PaperRun& run : block.runs) {
+    run.search_ms = {1, 90, 1, 90, 1, 90};
+    run.exact_similarity_ms = {5, 90, 5, 90, 5, 90};
+  }
+  EXPECT_EQ(cells_of(paper_text(block, {3}), "together, median").front(), "8.000");
+}
+
+TEST(PaperTables, TheDescribersOfARecordingShareAPicture) {
   PaperBlock block = sample_block();
   block.recording = "hotel?seed=3&similarity=1";
-  EXPECT_EQ(curves_file_name(block), "pr-hotel-seed-3-similarity-1-2-by-hand.svg");
-  const std::string svg = curves_svg(block);
+  PaperBlock other = block;
+  other.describer = "network";
+  const std::string svg = curves_svg({block, other});
   EXPECT_THAT(svg, HasSubstr("hotel?seed=3&amp;similarity=1"));
-  EXPECT_THAT(svg, HasSubstr("L = 500, AUC 0.528"));
-  EXPECT_THAT(svg, HasSubstr("exact, AUC 0.528"));
+  for (const char* curve : {"by hand, L = 500: 0.528", "by hand, exact: 0.528",
+                            "network, L = 500: 0.528", "network, exact: 0.528"}) {
+    EXPECT_THAT(svg, HasSubstr(curve));
+  }
+  EXPECT_THAT(svg, HasSubstr("Lip6 Indoor 0.832"));
 }
 
 }  // namespace

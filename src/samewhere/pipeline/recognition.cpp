@@ -5,6 +5,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/features/orb.hpp>
+#include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/report/jpeg.hpp>
 
@@ -110,6 +111,8 @@ void Recognition::report_to(RunOutcome& outcome) && {
   outcome.record.ledger = std::move(found_.record.ledger);
   outcome.matches = std::move(found_.matches);
   outcome.accepted = std::move(found_.accepted);
+  outcome.record.figures.push_back(
+      describer_figure(config_.describe, detector_.describer_checksum()));
 }
 
 }  // namespace samewhere::pipeline

@@ -50,7 +50,8 @@ class Recognition {
   // Point into this object.
   RecognitionSteps steps();
 
-  // What was found so far, with the time of each step and of all of a frame's steps together.
+  // What was found so far, by which describer, with the time of each step and of all of a frame's
+  // steps together.
   // Nothing runs any more.
   void report_to(RunOutcome& outcome) &&;
 

@@ -83,6 +83,7 @@ std::string bytes_of(Recognition recognition) {
   EXPECT_EQ(outcome.record.thumbnails.size(), kNumFrames);
   EXPECT_FALSE(outcome.matches.empty());
   EXPECT_FALSE(outcome.accepted.empty());
+  EXPECT_EQ(outcome.record.figures.size(), 1U) << "the describer";
   EXPECT_EQ(outcome.record.timings.durations_ms().at(report::kWholeFrameStage).size(), kNumFrames);
   return bytes;
 }
@@ -99,74 +100,6 @@ TEST(Recognition, TheThreadsFindToTheByteWhatOneThreadFindsHoweverTheyDawdle) {
       run_in_threads(one_by_one(frames), slowed(in_threads.steps(), seed));
       EXPECT_EQ(bytes_of(std::move(in_threads)), expected) << name << ", seed " << seed;
     }
-  }
-}
-
-// Steps that hand on a frame's number and do nothing else.
-RecognitionSteps counting(std::vector<std::uint64_t>& judged) {
-  return {.describe =
-              [](const core::Frame& frame) {
-                DescribedFrame described;
-                described.view.frame = frame.id;
-                return described;
-              },
-          .search =
-              [](DescribedFrame described) {
-                SearchedFrame searched;
-                searched.described = std::move(described);
-                return searched;
-              },
-          .judge =
-              [&judged](const SearchedFrame& frame) {
-                judged.push_back(frame.described.view.frame.index());
-              }};
-}
-
-NextFrame numbered(std::uint64_t num_frames) {
-  return [num_frames, next = std::uint64_t{0}]() mutable {
-    std::optional<core::Frame> frame;
-    if (next < num_frames) frame.emplace().id = core::FrameId(next++);
-    return frame;
-  };
-}
-
-TEST(Recognition, EveryFrameComesToEveryStepInOrder) {
-  for (const auto run : {run_in_turn, run_in_threads}) {
-    for (const std::uint64_t num_frames : {0, 1, 3, 1000}) {
-      std::vector<std::uint64_t> judged;
-      run(numbered(num_frames), counting(judged));
-      ASSERT_EQ(judged.size(), num_frames);
-      EXPECT_TRUE(std::is_sorted(judged.begin(), judged.end()));
-    }
-  }
-}
-
-TEST(Recognition, WhatAnyStepThrowsComesOutAndNobodyWaitsForever) {
-  for (const auto run : {run_in_turn, run_in_threads}) {
-    std::vector<std::uint64_t> judged;
-    const auto fail_at_7 = [](core::FrameId frame) {
-      if (frame.index() == 7) throw core::InputError("no frame 7");
-    };
-    const RecognitionSteps plain = counting(judged);
-    RecognitionSteps steps = plain;
-    steps.describe = [&](const core::Frame& frame) {
-      fail_at_7(frame.id);
-      return plain.describe(frame);
-    };
-    EXPECT_THROW(run(numbered(1000), steps), core::InputError);
-    steps = plain;
-    steps.search = [&](DescribedFrame frame) {
-      fail_at_7(frame.view.frame);
-      return plain.search(std::move(frame));
-    };
-    EXPECT_THROW(run(numbered(1000), steps), core::InputError);
-    steps = plain;
-    steps.judge = [&](const SearchedFrame& frame) { fail_at_7(frame.described.view.frame); };
-    EXPECT_THROW(run(numbered(1000), steps), core::InputError);
-    const NextFrame broken = []() -> std::optional<core::Frame> {
-      throw core::InputError("cut short");
-    };
-    EXPECT_THROW(run(broken, plain), core::InputError);
   }
 }
 

@@ -126,6 +126,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   record.figures.push_back(
       {"keyframes / landmarks",
        fmt::format("{} / {}", slam.map().keyframes.size(), slam.map().landmarks.size())});
+  record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
   record.truth = aligned_truth(evaluation, truth);
   return outcome;
 }
@@ -145,7 +146,8 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
   drop_unused_thumbnails(record);
   const RecognitionFindings findings{static_cast<int>(record.ledger.size()), outcome.matches,
                                      outcome.accepted, config.retrieve.window_frames};
-  record.figures = figures_of(evaluate_recognition(findings, truth));
+  const auto measured = figures_of(evaluate_recognition(findings, truth));
+  record.figures.insert(record.figures.begin(), measured.begin(), measured.end());
   if (record.ledger.empty()) {
     record.figures.push_back(
         {"note",

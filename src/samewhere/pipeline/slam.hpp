@@ -31,6 +31,7 @@ class Slam {
   const scene::MapVersion& map() const { return map_; }
   const core::Ledger& ledger() const { return ledger_; }
   bool is_keyframe(core::FrameId frame) const { return keyframe_of_.contains(frame); }
+  std::uint64_t describer_checksum() const { return detector_.describer_checksum(); }
   core::Timings& timings() { return timings_; }
 
  private:

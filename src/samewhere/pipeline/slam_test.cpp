@@ -3,6 +3,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/paper_profile.hpp>
 #include <samewhere/pipeline/slam.hpp>
 
 namespace samewhere::pipeline {
@@ -71,13 +72,51 @@ TEST(Slam, BlackFramesAreLostAndTheWalkResumesAfterThem) {
   EXPECT_EQ(trajectory_of(slam.map(), slam.frames()).size(), slam.frames().size() - 2);
 }
 
-TEST(Profile, PaperIsThePublishedMethod) {
-  const Config paper = profile("paper");
-  EXPECT_EQ(paper.retrieve.search, retrieve::Search::kSampled);
-  EXPECT_EQ(paper.retrieve.num_draws, 50);
-  EXPECT_EQ(paper.verify.min_similarity, 0.7);
-  EXPECT_EQ(paper.verify.pause_frames, 10);
-  EXPECT_FALSE(paper.verify.require_geometry);
+// A config in which nothing is as published.
+Config unpublished() {
+  Config config;
+  config.describe.width_px = config.describe.height_px = 100;
+  config.describe.equalize = false;
+  config.features.num_features = 77;
+  config.retrieve = {.search = retrieve::Search::kExact,
+                     .num_candidates = 7,
+                     .place_frames = 9,
+                     .num_draws = 11,
+                     .min_similarity = 0.1,
+                     .per_draw = retrieve::PerDraw::kNearest,
+                     .group_size = 33,
+                     .queue_size = 3};
+  config.verify = {.min_similarity = 0.2,
+                   .pause_frames = 4,
+                   .require_geometry = true,
+                   .rank_by = verify::RankBy::kInliers};
+  return config;
+}
+
+void expect_published(const Config& config) {
+  EXPECT_EQ(config.describe.width_px, 480);
+  EXPECT_EQ(config.describe.height_px, 360);
+  EXPECT_TRUE(config.describe.equalize);
+  EXPECT_EQ(config.features.num_features, 1000);
+  EXPECT_EQ(config.retrieve.search, retrieve::Search::kSampled);
+  EXPECT_EQ(config.retrieve.num_candidates, 3);
+  EXPECT_EQ(config.retrieve.place_frames, 0);
+  EXPECT_EQ(config.retrieve.num_draws, 50);
+  EXPECT_EQ(config.retrieve.min_similarity, 0.6);
+  EXPECT_EQ(config.retrieve.per_draw, retrieve::PerDraw::kTop3);
+  EXPECT_EQ(config.retrieve.group_size, 100);
+  EXPECT_EQ(config.retrieve.queue_size, 10);
+  EXPECT_EQ(config.verify.min_similarity, 0.7);
+  EXPECT_EQ(config.verify.pause_frames, 10);
+  EXPECT_FALSE(config.verify.require_geometry);
+  EXPECT_EQ(config.verify.rank_by, verify::RankBy::kSimilarity);
+}
+
+TEST(Profile, PaperIsThePublishedMethodWhateverTheDefaultsBecome) {
+  expect_published(profile("paper"));
+  Config config = unpublished();
+  core::read_config(config, kPaperProfile, "paper.yaml");
+  expect_published(config);
   EXPECT_THROW(profile("best"), core::InputError);
 }
 

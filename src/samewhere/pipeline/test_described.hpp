@@ -17,14 +17,21 @@ inline DescribedRecording second_lap() {
   const std::vector<std::vector<float>> views = {
       {1, 0, 0, 0, 0, 0, 0, 0},   {0, 1, 0, 0, 0, 0, 0, 0},   {0, 0, 1, 0, 0, 0, 0, 0},
       {1, 0, 0, .1F, 0, 0, 0, 0}, {1, 0, 0, 0, .2F, 0, 0, 0}, {0, 0, 1, 0, 0, .3F, 0, 0}};
-  DescribedRecording recording{
-      .name = "second lap", .window_frames = 2, .truth = {}, .by_describer = {}};
-  DescribedViews described{.describer = "by hand", .views = {}, .durations_ms = {}};
+  DescribedRecording recording{.name = "second lap",
+                               .window_frames = 2,
+                               .truth = {},
+                               .timed_frames = {},
+                               .by_describer = {}};
+  DescribedViews described{
+      .describer = "by hand", .checksum = 0x1234, .views = {}, .durations_ms = {}};
   core::PlaceTruthMatrix places;
   places.num_frames = static_cast<int>(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     described.views.push_back({core::FrameId(i), core::unit(views[i]), 1});
-    described.durations_ms.push_back(2.0);
+    if (i % 2 == 0) {
+      recording.timed_frames.push_back(static_cast<int>(i));
+      described.durations_ms.push_back(2.0);
+    }
     for (std::size_t j = 0; j < views.size(); ++j) {
       const bool is_same = i == j || i == j + 3;
       places.values.push_back(is_same ? core::PlaceTruth::kSame : core::PlaceTruth::kDifferent);

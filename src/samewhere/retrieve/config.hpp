@@ -4,7 +4,7 @@
 
 namespace samewhere::retrieve {
 
-enum class Search { kExact, kSampled };
+enum class Search { kExact, kSampled, kEveryQueue };
 enum class PerDraw { kTop3, kNearest };
 
 struct Config {
@@ -14,7 +14,7 @@ struct Config {
   int window_frames = -1;
   int place_frames = 0;
 
-  // sampled search only, section 3.1.4 of the published method
+  // sampled search and every_queue only, section 3.1.4 of the published method
   int num_draws = 50;           // L
   double min_similarity = 0.6;  // cosine, eq. (7)
   PerDraw per_draw = PerDraw::kTop3;
@@ -24,8 +24,9 @@ struct Config {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("search", config.search,
-        {.help = "compare every stored view, or a random sample of them (the published method)",
-         .choices = {"exact", "sampled"}});
+        {.help = "compare every stored view, or a random sample of them (the published method), or "
+                 "what the sample tends to with ever more draws",
+         .choices = {"exact", "sampled", "every_queue"}});
   visit("num_candidates", config.num_candidates,
         {.help = "views handed to verification, the best ones", .min = 1, .max = 1000});
   visit("window_s", config.window_s,
@@ -39,11 +40,12 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .min = 0});
   visit("num_draws", config.num_draws,
         {.help = "sampled search: L, queues drawn per query", .min = 1, .max = 1000000});
-  visit(
-      "min_similarity", config.min_similarity,
-      {.help = "sampled search: cosine that a view must exceed, eq. (7)", .min = -1.0, .max = 1.0});
+  visit("min_similarity", config.min_similarity,
+        {.help = "sampled, every_queue: cosine that a view must exceed, eq. (7)",
+         .min = -1.0,
+         .max = 1.0});
   visit("per_draw", config.per_draw,
-        {.help = "sampled search: kept of a drawn queue: its three best (Table 1), or the nearest "
+        {.help = "sampled, every_queue: kept of a queue: its three best (Table 1), or the nearest "
                  "by eq. (5)-(6)",
          .choices = {"top3", "nearest"}});
   visit(

@@ -40,19 +40,26 @@ void Retriever::add(const core::Descriptor& descriptor) {
 std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor) const {
   check(descriptor);
   const int num_allowed = store_.num_older(descriptor.frame, config_.window_frames);
-  std::vector<ScoredPosition> scored;
-  if (config_.search == Search::kExact) {
-    scored = exact_search(store_, {core::centred_unit(descriptor.unit), num_allowed});
-  } else {
-    core::Random random(core::seed_of(seed_, "retrieve", descriptor.frame.value()));
-    scored = sampled_search(store_, {descriptor.unit, num_allowed}, config_, random);
-  }
   std::vector<FoundView> found;
-  for (const ScoredPosition& best : best_places(store_, std::move(scored), config_)) {
+  for (const ScoredPosition& best : best_places(store_, scored(descriptor, num_allowed), config_)) {
     const std::span<const float> vector = store_.vector(best.position);
     found.push_back({store_.frame(best.position), {vector.begin(), vector.end()}});
   }
   return found;
+}
+
+std::vector<ScoredPosition> Retriever::scored(const core::Descriptor& descriptor,
+                                              int num_allowed) const {
+  switch (config_.search) {
+    case Search::kExact:
+      return exact_search(store_, {core::centred_unit(descriptor.unit), num_allowed});
+    case Search::kEveryQueue:
+      return every_queue_search(store_, {descriptor.unit, num_allowed}, config_);
+    case Search::kSampled:
+      break;
+  }
+  core::Random random(core::seed_of(seed_, "retrieve", descriptor.frame.value()));
+  return sampled_search(store_, {descriptor.unit, num_allowed}, config_, random);
 }
 
 std::vector<core::Candidate> Retriever::query(const core::Descriptor& descriptor) const {

@@ -8,6 +8,7 @@
 #include <samewhere/core/descriptor.hpp>
 #include <samewhere/core/verdict.hpp>
 #include <samewhere/retrieve/config.hpp>
+#include <samewhere/retrieve/search.hpp>
 #include <samewhere/retrieve/segmented_store.hpp>
 
 namespace samewhere::retrieve {
@@ -37,8 +38,8 @@ class Retriever {
   void add(const core::Descriptor& descriptor);
 
   // At most config.num_candidates views, none of them config.window_frames old or younger. Exact
-  // search knows no threshold: what is alike enough, verification decides. Sampled search may find
-  // nothing; its draws depend on seed and query frame only. The query need not have been added.
+  // search knows no threshold: what is alike enough, verification decides. The others may find
+  // nothing; the draws depend on seed and query frame only. The query need not have been added.
   // Throws ContractError as add().
   std::vector<FoundView> search(const core::Descriptor& descriptor) const;
   // The search and then the exact similarity.
@@ -57,6 +58,7 @@ class Retriever {
 
  private:
   void check(const core::Descriptor& descriptor) const;
+  std::vector<ScoredPosition> scored(const core::Descriptor& descriptor, int num_allowed) const;
 
   Config config_;
   std::uint64_t seed_;

@@ -96,6 +96,18 @@ std::vector<ScoredPosition> sampled_search(const SegmentedStore& store, const Se
   return found;
 }
 
+std::vector<ScoredPosition> every_queue_search(const SegmentedStore& store,
+                                               const SearchQuery& query, const Config& config) {
+  std::vector<ScoredPosition> found;
+  for (int group = 0; group < store.num_groups(); ++group) {
+    for (int queue = 0; queue < store.queues_per_group(); ++queue) {
+      const auto kept = best_of_queue(store, store.queue(group, queue), query, config);
+      found.insert(found.end(), kept.begin(), kept.end());
+    }
+  }
+  return found;
+}
+
 std::vector<ScoredPosition> best_places(const SegmentedStore& store,
                                         std::vector<ScoredPosition> scored, const Config& config) {
   const auto place_frames = static_cast<std::uint64_t>(std::max(config.place_frames, 1));

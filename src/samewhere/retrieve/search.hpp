@@ -39,6 +39,11 @@ std::vector<ScoredPosition> exact_search(const SegmentedStore& store, const Sear
 std::vector<ScoredPosition> sampled_search(const SegmentedStore& store, const SearchQuery& query,
                                            const Config& config, core::Random& random);
 
+// The same with every queue taken once: what sampled_search tends to with ever more draws. In the
+// order of the store.
+std::vector<ScoredPosition> every_queue_search(const SegmentedStore& store,
+                                               const SearchQuery& query, const Config& config);
+
 // The best `config.num_candidates`, best first. Of vectors that lie closer than place_frames frames
 // to a better one none is kept: they are views of the same place.
 std::vector<ScoredPosition> best_places(const SegmentedStore& store,

@@ -88,6 +88,21 @@ TEST(SampledSearch, WithVeryManyDrawsFindsTheBestThreeOfEveryQueue) {
   }
 }
 
+TEST(EveryQueueSearch, IsWhatTheSampleTendsTo) {
+  for (const PerDraw per_draw : {PerDraw::kTop3, PerDraw::kNearest}) {
+    const std::size_t num_kept = per_draw == PerDraw::kTop3 ? 3 : 1;
+    Config config;
+    config.per_draw = per_draw;
+    for (std::uint64_t seed = 0; seed < kNumSeeds; ++seed) {
+      const Scene scene = random_scene(seed, 237);
+      const auto found = every_queue_search(scene.store, {scene.query, 215}, config);
+      EXPECT_EQ(positions(found), positions(all_queues(scene, 215, num_kept))) << "seed " << seed;
+      for (const ScoredPosition& each : found) EXPECT_GT(each.similarity, config.min_similarity);
+    }
+  }
+  EXPECT_TRUE(every_queue_search(SegmentedStore(100, 10), {{}, 0}, {}).empty());
+}
+
 TEST(SampledSearch, NearestKeepsTheOneNearestOfAQueue) {
   Config config;
   config.num_draws = 5000;

@@ -29,7 +29,8 @@ inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
   visit("min_similarity", config.min_similarity,
         {.help = "descriptors less similar (NCC) are refused", .min = -1.0, .max = 1.0});
   visit("pause_frames", config.pause_frames,
-        {.help = "frames after a loop in which no other is accepted, paper section on the interval",
+        {.help = "frames after a loop in which no other is accepted, nor is a second one of the "
+                 "loop's own view (paper, section on the interval); 0: no limit",
          .min = 0,
          .max = 100000});
   visit("require_geometry", config.require_geometry,

@@ -86,7 +86,11 @@ std::optional<Rejection> refuse_early(const Candidate& candidate, const Evidence
   }
   if (!history.last_loop_query || config.pause_frames == 0) return std::nullopt;
   const auto since = candidate.query.index() - history.last_loop_query->index();
-  if (since == 0 || since > static_cast<std::uint64_t>(config.pause_frames)) return std::nullopt;
+  if (since > static_cast<std::uint64_t>(config.pause_frames)) return std::nullopt;
+  if (since == 0) {
+    return rejection(candidate, evidence, Refusal::kPause,
+                     "another match of this view is a loop, detection pauses");
+  }
   return rejection(
       candidate, evidence, Refusal::kPause,
       fmt::format("{} frames after a loop, detection pauses for {}", since, config.pause_frames));

@@ -124,9 +124,12 @@ TEST(Decide, AfterALoopDetectionPausesForTenFramesAndResumesAtTheEleventh) {
   const auto after = [&](int frames) {
     return stage(good_evidence(), paper, {core::FrameId(static_cast<std::uint64_t>(100 - frames))});
   };
+  EXPECT_EQ(after(0), "pause") << "of one view one match is a loop";
   EXPECT_EQ(after(1), "pause");
   EXPECT_EQ(after(10), "pause");
   EXPECT_EQ(after(11), "accepted");
+  EXPECT_EQ(stage(good_evidence(), {.pause_frames = 0}, {core::FrameId(100)}), "accepted")
+      << "without a pause every match is judged for itself";
 }
 
 TEST(Decide, WhereGeometryIsNotRequiredALoopWithoutAGoodPoseIsCountedButHasNone) {

@@ -1,0 +1,62 @@
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/pipeline/loop_detector.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+// A view in which nothing can be found again: similarity alone speaks.
+features::View blank_view(std::uint64_t frame) {
+  return {.frame = core::FrameId(frame),
+          .stamp_s = 0.0,
+          .rig = std::make_shared<core::Rig>(),
+          .image_size_px = {640, 480},
+          .features = std::make_shared<features::Features>()};
+}
+
+core::Candidate candidate(std::uint64_t query, std::uint64_t match, double similarity) {
+  return {{}, core::FrameId(query), core::FrameId(match), similarity};
+}
+
+std::vector<std::string> stages(LoopDetector& detector, std::uint64_t query) {
+  const auto without_odometry = [](const core::Candidate& /*candidate*/,
+                                   const core::Sim3& /*match_from_query*/) {
+    return std::optional<core::OdometryEvidence>();
+  };
+  const std::vector<core::Candidate> candidates = {
+      candidate(query, 0, 0.9), candidate(query, 1, 0.8), candidate(query, 2, 0.6)};
+  std::vector<std::string> stages;
+  for (const auto& row : detector.judge(query < 3 ? std::vector<core::Candidate>() : candidates,
+                                        blank_view(query), without_odometry)) {
+    stages.emplace_back(core::stage_of(row.verdict));
+  }
+  return stages;
+}
+
+TEST(LoopDetector, ThePublishedOneAcceptsTheBestMatchOfAViewAndThenPauses) {
+  Config config = profile("paper");
+  config.retrieve.window_frames = 0;
+  LoopDetector detector(config);
+  for (std::uint64_t frame = 0; frame < 3; ++frame) EXPECT_TRUE(stages(detector, frame).empty());
+  using Stages = std::vector<std::string>;
+  EXPECT_EQ(stages(detector, 20), (Stages{"accepted", "pause", "similarity"}));
+  EXPECT_EQ(stages(detector, 30), (Stages{"pause", "pause", "similarity"}));
+  EXPECT_EQ(stages(detector, 31), (Stages{"accepted", "pause", "similarity"}));
+}
+
+TEST(LoopDetector, WithoutAPauseEveryMatchOfAViewIsJudgedForItself) {
+  Config config = profile("paper");
+  config.retrieve.window_frames = 0;
+  config.verify.pause_frames = 0;
+  LoopDetector detector(config);
+  for (std::uint64_t frame = 0; frame < 3; ++frame) EXPECT_TRUE(stages(detector, frame).empty());
+  EXPECT_EQ(stages(detector, 20), (std::vector<std::string>{"accepted", "accepted", "similarity"}));
+}
+
+}  // namespace
+}  // namespace samewhere::pipeline
