@@ -60,9 +60,10 @@ class Layers : public torch::nn::Module {
     for (std::size_t i = 0; i < convolutions_.size(); ++i) {
       x = norms_[i](convolutions_[i](x));
       if (i + 1 < convolutions_.size()) x = torch::max_pool2d(torch::relu(x), 2, 2);
+      if (i == 0) x = x * torch::rsqrt(kResponseFloor + x.square().sum(1, true));
     }
     x = torch::avg_pool2d(x, kCodeWindow, kCodeStep);
-    return x.flatten(1);
+    return torch::tanh(x).flatten(1);
   }
 
   Tensor forward(const Tensor& x) { return decoder_(encode(x)); }

@@ -61,8 +61,7 @@ void light_anew(cv::Mat& input, core::Random& random) {
   cv::Mat lights(kLights, CV_32F);
   for (int row = 0; row < lights.rows; ++row) {
     for (int column = 0; column < lights.cols; ++column) {
-      lights.at<float>(row, column) =
-          static_cast<float>(std::exp(kLightSigma * random.gaussian()));
+      lights.at<float>(row, column) = static_cast<float>(std::exp(kLightSigma * random.gaussian()));
     }
   }
   constexpr double kDarkest = 0.05;  // the cubic between two lights may swing below 0

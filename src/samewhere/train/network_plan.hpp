@@ -20,9 +20,13 @@ struct ConvolutionPlan {
 };
 
 // The code is the mean of what the last convolution gives (14 x 19 positions) in windows of so many
-// positions a side, so many apart: 4 x 6 of them.
+// positions a side, so many apart: 4 x 6 of them. Its tanh, so that no single number decides.
 inline constexpr int kCodeWindow = 4;
 inline constexpr int kCodeStep = 3;
+
+// Behind the first convolution's maximum each position is divided by sqrt(this + the sum of the
+// squares of its channels): what is in the view counts, not how strongly it is lit.
+inline constexpr float kResponseFloor = 1.0F;
 
 // The shape of the encoder, after CALC (Merrill and Huang, RSS 2018): three convolutions. The first
 // has the stride that brings any input to 62 x 82 positions, so that all later layers, their cost

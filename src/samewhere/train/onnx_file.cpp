@@ -82,6 +82,31 @@ void add_pooling(Chain& chain, const std::string& type, const std::string& name,
   add_sizes(node, "strides", {stride, stride});
 }
 
+void add_number(onnx::NodeProto& node, const std::string& name, float number) {
+  onnx::AttributeProto& attribute = *node.add_attribute();
+  attribute.set_name(name);
+  attribute.set_type(onnx::AttributeProto::FLOAT);
+  attribute.set_f(number);
+}
+
+void add_whole_number(onnx::NodeProto& node, const std::string& name, std::int64_t number) {
+  onnx::AttributeProto& attribute = *node.add_attribute();
+  attribute.set_name(name);
+  attribute.set_type(onnx::AttributeProto::INT);
+  attribute.set_i(number);
+}
+
+// x / (bias + alpha / size * sum of squares)^beta, the sum over as many channels as reach all from
+// any.
+void add_response_norm(Chain& chain, int num_channels) {
+  onnx::NodeProto& node = chain.add("LRN", "response");
+  const int size = 2 * num_channels - 1;
+  add_whole_number(node, "size", size);
+  add_number(node, "alpha", static_cast<float>(size));
+  add_number(node, "beta", 0.5F);
+  add_number(node, "bias", kResponseFloor);
+}
+
 void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
   Chain chain(graph, "image");
   const std::size_t num_convolutions = encoder.convolutions.size();
@@ -91,13 +116,11 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
     if (i + 1 == num_convolutions) break;
     chain.add("Relu", "relu" + number);
     add_pooling(chain, "MaxPool", "maximum" + number, 2, 2);
+    if (i == 0) add_response_norm(chain, encoder.convolutions[i].plan.num_outputs);
   }
   add_pooling(chain, "AveragePool", "mean", kCodeWindow, kCodeStep);
-  onnx::NodeProto& flatten = chain.add("Flatten", "code");
-  onnx::AttributeProto& axis = *flatten.add_attribute();
-  axis.set_name("axis");
-  axis.set_type(onnx::AttributeProto::INT);
-  axis.set_i(1);
+  chain.add("Tanh", "bounded");
+  add_whole_number(chain.add("Flatten", "code"), "axis", 1);
 }
 
 }  // namespace
