@@ -51,11 +51,14 @@ TEST(Examples, OnlyAWarpMovesThings) {
     const cv::Mat input = distorted_input(view, Config{.warp = warp}, random);
     cv::Mat blurred;
     cv::GaussianBlur(input, blurred, cv::Size(), 2.0);
-    const cv::Mat row = blurred.row(60);
-    const double middle = 0.5 * (row.at<float>(10) + row.at<float>(150));
-    int column = 0;
-    while (row.at<float>(column) < middle) ++column;
-    return column;
+    int steepest = 1;  // light that falls otherwise is less steep
+    const auto step = [row = blurred.row(60)](int column) {
+      return row.at<float>(column) - row.at<float>(column - 1);
+    };
+    for (int column = 1; column < 160; ++column) {
+      if (step(column) > step(steepest)) steepest = column;
+    }
+    return steepest;
   };
   int farthest = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
