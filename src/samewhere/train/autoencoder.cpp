@@ -63,7 +63,7 @@ class Layers : public torch::nn::Module {
       if (i == 0) x = x * torch::rsqrt(kResponseFloor + x.square().sum(1, true));
     }
     x = torch::avg_pool2d(x, kCodeWindow, kCodeStep);
-    return torch::tanh(x).flatten(1);
+    return torch::sigmoid(x).flatten(1);
   }
 
   Tensor forward(const Tensor& x) { return decoder_(encode(x)); }

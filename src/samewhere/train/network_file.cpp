@@ -47,7 +47,7 @@ json layers_as_json(const NetworkPlan& plan) {
     if (i + 1 < plan.convolutions.size()) layers.push_back("ReLU, maximum 2 x 2");
     if (i == 0) layers.push_back("each position over sqrt(1 + the sum of its squares)");
   }
-  layers.push_back(fmt::format("mean {0} x {0}, stride {1}, tanh", kCodeWindow, kCodeStep));
+  layers.push_back(fmt::format("mean {0} x {0}, stride {1}, sigmoid", kCodeWindow, kCodeStep));
   return layers;
 }
 

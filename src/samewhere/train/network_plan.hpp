@@ -9,8 +9,7 @@
 namespace samewhere::train {
 
 // One convolution, square kernel. All but the last are followed by ReLU and the maximum of each
-// 2 x 2 positions; the last is not, so that the numbers of a code lie around 0 and a constant that
-// all views share does not pass for likeness.
+// 2 x 2 positions.
 struct ConvolutionPlan {
   int num_inputs = 0;  // channels
   int num_outputs = 0;
@@ -19,8 +18,10 @@ struct ConvolutionPlan {
   int padding_px = 0;
 };
 
-// The code is the mean of what the last convolution gives (14 x 19 positions) in windows of so many
-// positions a side, so many apart: 4 x 6 of them. Its tanh, so that no single number decides.
+// The code is the sigmoid of the mean of what the last convolution gives (14 x 19 positions) in
+// windows of so many positions a side, so many apart: 4 x 6 of them. No ReLU before it, half of the
+// numbers would say nothing; bounded, so that no single one decides; around 0.5, which cosine takes
+// for likeness (nothing is lost below the published 0.6) and NCC takes away.
 inline constexpr int kCodeWindow = 4;
 inline constexpr int kCodeStep = 3;
 

@@ -119,7 +119,7 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
     if (i == 0) add_response_norm(chain, encoder.convolutions[i].plan.num_outputs);
   }
   add_pooling(chain, "AveragePool", "mean", kCodeWindow, kCodeStep);
-  chain.add("Tanh", "bounded");
+  chain.add("Sigmoid", "bounded");
   add_whole_number(chain.add("Flatten", "code"), "axis", 1);
 }
 
