@@ -51,6 +51,8 @@ class Layers : public torch::nn::Module {
           register_module("norm" + number, torch::nn::BatchNorm2d(convolution.num_outputs)));
     }
     decoder_ = register_module("decoder", torch::nn::Linear(plan.code_size, plan.target_size));
+    // at 0 a sigmoid is four times flatter than what it stands for, and would learn as slowly
+    torch::nn::init::constant_(norms_.back()->weight, 4.0);
     // what is not known yet is not guessed: it starts from the mean target
     torch::nn::init::zeros_(decoder_->weight);
     torch::nn::init::zeros_(decoder_->bias);
