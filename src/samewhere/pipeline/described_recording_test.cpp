@@ -93,10 +93,10 @@ TEST(DescribeRecording, DescribesEachFrameAndTimesUpTo400SpreadEvenly) {
 
 TEST(MakeDescribers, AreNamedAndNeverTwoTheSame) {
   const Config config = profile("paper");
-  for (const char* list : {"", "hog"}) {
+  for (const auto& [list, name] : {std::pair("", "autoencoder"), std::pair("hog", "hog")}) {
     const auto describers = make_describers(list, config);
     ASSERT_EQ(describers.size(), 1u) << list;
-    EXPECT_EQ(describers.front().name, "hog");
+    EXPECT_EQ(describers.front().name, name);
   }
   for (const char* list : {"hog,hog", "hog,", "hog,/nowhere/net.onnx"})
     EXPECT_THROW(make_describers(list, config), core::InputError) << list;
