@@ -95,7 +95,7 @@ TEST_F(TrainProgram, BadInputEndsWithOneClearLine) {
   expect_clear_error("train --out x.onnx", {"--images"});
   const std::string small = "train --images " + quoted(path("photos")) + " --out " +
                             quoted(path("x.onnx")) + " --epochs 1 --code-size ";
-  expect_clear_error(small + "1000", {"code_size = 1000", "960 or 1008"});
+  expect_clear_error(small + "1000", {"code_size = 1000", "984 or 1008"});
   expect_clear_error(small + "many", {"code_size = many"});
   EXPECT_FALSE(std::filesystem::exists(path("x.onnx")));
 }

@@ -51,6 +51,8 @@ class Layers : public torch::nn::Module {
           register_module("norm" + number, torch::nn::BatchNorm2d(convolution.num_outputs)));
     }
     decoder_ = register_module("decoder", torch::nn::Linear(plan.code_size, plan.target_size));
+    // at 0 a sigmoid is four times flatter than what it stands for, and would learn as slowly
+    torch::nn::init::constant_(norms_.back()->weight, 4.0);
     // what is not known yet is not guessed: it starts from the mean target
     torch::nn::init::zeros_(decoder_->weight);
     torch::nn::init::zeros_(decoder_->bias);
@@ -58,12 +60,12 @@ class Layers : public torch::nn::Module {
 
   Tensor encode(Tensor x) {
     for (std::size_t i = 0; i < convolutions_.size(); ++i) {
-      x = torch::relu(norms_[i](convolutions_[i](x)));
-      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(x, 2, 2);
+      x = norms_[i](convolutions_[i](x));
+      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(torch::relu(x), 2, 2);
       if (i == 0) x = x * torch::rsqrt(kResponseFloor + x.square().sum(1, true));
     }
     x = torch::avg_pool2d(x, kCodeWindow, kCodeStep);
-    return torch::sqrt(x + kCodeFloor).flatten(1);
+    return torch::sigmoid(x).flatten(1);
   }
 
   Tensor forward(const Tensor& x) { return decoder_(encode(x)); }

@@ -29,7 +29,7 @@ std::unique_ptr<describe::Inference> exported(const Autoencoder& autoencoder) {
 TEST(NetworkPlan, ACodeThatNoLayerGivesIsRefused) {
   const auto refused = input::complaint([] { plan_network({.code_size = 1000}); });
   EXPECT_THAT(refused, testing::HasSubstr("code_size = 1000"));
-  EXPECT_THAT(refused, testing::HasSubstr("960 or 1008"));
+  EXPECT_THAT(refused, testing::HasSubstr("984 or 1008"));
 }
 
 // For all sizes of input: the length of the code is the planned one, and OpenCV, reading the

@@ -43,9 +43,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "rows x columns of what the encoder sees",
          .choices = {"120x160", "180x240", "360x480"}});
   visit("code_size", config.code_size,
-        {.help = "length of the code, a multiple of 48 (6 x 8 positions)",
-         .min = 48,
-         .max = 48 * 128});
+        {.help = "length of the code, a multiple of 24 (4 x 6 positions)",
+         .min = 24,
+         .max = 24 * 256});
   visit("channels", config.channels,
         {.help = "of the first layer; the second has twice as many", .min = 1, .max = 256});
   visit("target", config.target,

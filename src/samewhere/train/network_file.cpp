@@ -44,10 +44,10 @@ json layers_as_json(const NetworkPlan& plan) {
         fmt::format("convolution {0} x {0}, {1} to {2} channels, stride {3}, padding {4}",
                     convolution.kernel_px, convolution.num_inputs, convolution.num_outputs,
                     convolution.stride_px, convolution.padding_px));
-    layers.push_back(i + 1 < plan.convolutions.size() ? "ReLU, maximum 2 x 2" : "ReLU");
+    if (i + 1 < plan.convolutions.size()) layers.push_back("ReLU, maximum 2 x 2");
     if (i == 0) layers.push_back("each position over sqrt(1 + the sum of its squares)");
   }
-  layers.push_back(fmt::format("mean {0} x {0}, stride {1}, root", kCodeWindow, kCodeStep));
+  layers.push_back(fmt::format("mean {0} x {0}, stride {1}, sigmoid", kCodeWindow, kCodeStep));
   return layers;
 }
 

@@ -7,13 +7,13 @@
 namespace samewhere::train {
 namespace {
 
-constexpr int kNumPositions = 6 * 8;
+constexpr int kNumPositions = 4 * 6;
 
 void check_code_size(int code_size) {
   if (code_size % kNumPositions == 0) return;
   const int below = code_size / kNumPositions * kNumPositions;
   throw core::InputError(
-      fmt::format("code_size = {}: expected a multiple of {} (6 x 8 positions), such as {} or {}",
+      fmt::format("code_size = {}: expected a multiple of {} (4 x 6 positions), such as {} or {}",
                   code_size, kNumPositions, below, below + kNumPositions));
 }
 

@@ -8,8 +8,8 @@
 
 namespace samewhere::train {
 
-// One convolution, square kernel, followed by ReLU. All but the last are followed by the maximum of
-// each 2 x 2 positions, too.
+// One convolution, square kernel. All but the last are followed by ReLU and the maximum of each
+// 2 x 2 positions.
 struct ConvolutionPlan {
   int num_inputs = 0;  // channels
   int num_outputs = 0;
@@ -18,12 +18,12 @@ struct ConvolutionPlan {
   int padding_px = 0;
 };
 
-// The code is sqrt(this + the mean of what the last convolution gives, 14 x 19 positions, in windows
-// of so many positions a side, so many apart: 6 x 8 of them). The root keeps a few strong responses
-// from deciding alone, as in the Hellinger kernel.
+// The code is the sigmoid of the mean of what the last convolution gives (14 x 19 positions) in
+// windows of so many positions a side, so many apart: 4 x 6 of them. No ReLU before it, half of the
+// numbers would say nothing; bounded, so that no single one decides; around 0.5, which cosine takes
+// for likeness (nothing is lost below the published 0.6) and NCC takes away.
 inline constexpr int kCodeWindow = 4;
-inline constexpr int kCodeStep = 2;
-inline constexpr float kCodeFloor = 1e-3F;
+inline constexpr int kCodeStep = 3;
 
 // Behind the first convolution's maximum each position is divided by sqrt(this + the sum of the
 // squares of its channels): what is in the view counts, not how strongly it is lit.

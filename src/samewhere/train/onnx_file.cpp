@@ -113,16 +113,13 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
   for (std::size_t i = 0; i < num_convolutions; ++i) {
     const std::string number = std::to_string(i + 1);
     add_convolution(graph, chain, "convolution" + number, encoder.convolutions[i]);
-    chain.add("Relu", "relu" + number);
     if (i + 1 == num_convolutions) break;
+    chain.add("Relu", "relu" + number);
     add_pooling(chain, "MaxPool", "maximum" + number, 2, 2);
     if (i == 0) add_response_norm(chain, encoder.convolutions[i].plan.num_outputs);
   }
   add_pooling(chain, "AveragePool", "mean", kCodeWindow, kCodeStep);
-  const std::int64_t one[] = {1};
-  add_tensor(graph, "floor", one, {kCodeFloor});
-  chain.add("Add", "above_floor").add_input("floor");
-  chain.add("Sqrt", "root");
+  chain.add("Sigmoid", "bounded");
   add_whole_number(chain.add("Flatten", "code"), "axis", 1);
 }
 
