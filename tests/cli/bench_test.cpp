@@ -56,9 +56,8 @@ class BenchPaper : public testing::Test {
 };
 
 TEST_F(BenchPaper, PrintsAndWritesTheTables) {
-  const Outcome outcome =
-      bench(walk() + "@2 --tables 2,3,6 --describers hog --blind-spot 100 --out " +
-            quoted(path("out")));
+  const Outcome outcome = bench(
+      walk() + "@2 --tables 2,3,6 --describers hog --blind-spot 100 --out " + quoted(path("out")));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("walk, hog: 6 frames, 3 with a loop, window 2 frames, 5 seeds"),
             std::string::npos)
