@@ -57,8 +57,8 @@ cv::Mat seen_from_elsewhere(const cv::Mat& view, core::Random& random) {
 // Light that falls otherwise: brighter in one part of the view, darker in another, smoothly. What
 // equalisation cannot undo.
 void light_anew(cv::Mat& input, core::Random& random) {
-  const cv::Size kLights(5, 4);
-  cv::Mat lights(kLights, CV_32F);
+  const cv::Size size(5, 4);
+  cv::Mat lights(size, CV_32F);
   for (int row = 0; row < lights.rows; ++row) {
     for (int column = 0; column < lights.cols; ++column) {
       lights.at<float>(row, column) = static_cast<float>(std::exp(kLightSigma * random.gaussian()));
