@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <memory>
 
 #include <opencv2/core/utility.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
