@@ -30,6 +30,17 @@ class Channel {
     return true;
   }
 
+  // Takes the place of what waits, so that a reader gets the newest and the writer never waits.
+  // False if the channel is closed.
+  bool send_newest(T message) {
+    const std::lock_guard lock(mutex_);
+    if (is_closed_) return false;
+    messages_.clear();
+    messages_.push_back(std::move(message));
+    changed_.notify_all();
+    return true;
+  }
+
   // Nothing if the channel is closed and empty.
   std::optional<T> receive() {
     std::unique_lock lock(mutex_);

@@ -34,6 +34,17 @@ TEST(Channel, WhatIsLeftArrivesAfterItIsClosedAndThenNothing) {
   EXPECT_EQ(channel.receive(), std::nullopt);
 }
 
+TEST(Channel, TheNewestTakesThePlaceOfWhatWaits) {
+  Channel<int> channel(2);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(channel.send_newest(i)) << "the writer never waits";
+  EXPECT_EQ(channel.receive(), 4);
+  EXPECT_TRUE(channel.send_newest(5));
+  channel.close();
+  EXPECT_FALSE(channel.send_newest(6));
+  EXPECT_EQ(channel.receive(), 5);
+  EXPECT_EQ(channel.receive(), std::nullopt);
+}
+
 TEST(Channel, AWriterNeverRunsAheadOfItsReaderByMoreThanTheCapacity) {
   constexpr int kCapacity = 4;
   Channel<int> channel(kCapacity);

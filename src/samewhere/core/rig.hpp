@@ -43,9 +43,16 @@ struct Imu {
 struct Rig {
   std::vector<Camera> cameras;
   std::vector<Rigid3> body_from_camera;
+  // Camera 0 as it sits on the body, where its pictures were rectified, that is turned, after they
+  // were taken; none: they were not, and body_from_camera[0] says it.
+  std::optional<Rigid3> body_from_taken_camera;
   std::optional<Imu> imu;
 
   bool is_calibrated() const { return !cameras.empty(); }
+  // Camera 0 as its poses are told to the outside. Only where there is a camera.
+  const Rigid3& body_from_told_camera() const {
+    return body_from_taken_camera ? *body_from_taken_camera : body_from_camera.front();
+  }
 };
 
 }  // namespace samewhere::core

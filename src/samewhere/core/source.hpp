@@ -11,9 +11,11 @@ namespace samewhere::core {
 struct SourceInfo {
   std::string name;        // short, for output folders and titles
   std::string format;      // "TUM RGB-D", "7-Scenes", ...
-  int num_frames = 0;      // how many next() will give
+  int num_frames = 0;      // how many next() will give; 0: nobody knows
   bool has_depth = false;  // whether any frame comes with depth
+  int num_cameras = 1;     // images of a frame
   bool is_calibrated = false;
+  bool is_live = false;        // a camera: frames come whether they are asked for or not
   double frame_rate_hz = 0.0;  // 1 / median time between frames; 0 for a single frame
 };
 

@@ -1,8 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <fstream>
+#include <iterator>
 #include <numeric>
+#include <sstream>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <samewhere/core/timing.hpp>
 
@@ -25,6 +30,31 @@ void Timings::add(const Timings& other) {
     auto& own = durations_ms_[stage];
     own.insert(own.end(), durations_ms.begin(), durations_ms.end());
   }
+  for (const auto& [stage, processor_ms] : other.processor_ms_) {
+    processor_ms_[stage] += processor_ms;
+  }
+}
+
+double thread_processor_ms() {
+  timespec spent{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+  return 1e3 * static_cast<double>(spent.tv_sec) + 1e-6 * static_cast<double>(spent.tv_nsec);
+}
+
+std::optional<double> seconds_since_program_start() {
+  // proc(5): the name of the program is in brackets and may hold anything; 19 fields after it, the
+  // start in clock ticks since the machine's
+  std::ifstream file("/proc/self/stat");
+  const std::string stat((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::istringstream fields(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)));
+  std::string skipped;
+  for (int i = 0; i < 19; ++i) fields >> skipped;
+  double start_ticks = 0.0;
+  if (!(fields >> start_ticks)) return std::nullopt;
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+         start_ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 double peak_memory_mib() {

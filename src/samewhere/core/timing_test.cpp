@@ -40,13 +40,28 @@ TEST(Timing, AScopedTimerAddsOneDurationToItsStage) {
   EXPECT_GE(timings.durations_ms().at("track").front(), 0.0);
 }
 
+TEST(Timing, WorkCostsProcessorTime) {
+  constexpr double kWork_ms = 20.0;
+  Timings timings;
+  const double program_s = seconds_since_program_start().value();
+  {
+    const ScopedTimer timer(timings, "work");
+    const double start_ms = thread_processor_ms();
+    while (thread_processor_ms() < start_ms + kWork_ms) continue;
+  }
+  EXPECT_GE(timings.processor_ms().at("work"), kWork_ms);
+  EXPECT_GE(timings.durations_ms().at("work").front(), kWork_ms - 1.0);
+  EXPECT_GE(seconds_since_program_start().value(), program_s);
+}
+
 TEST(Timing, AnothersDurationsComeAfterItsOwn) {
   Timings own;
   Timings other;
-  own.add("track", 1.0);
-  other.add("track", 2.0);
+  own.add("track", 1.0, 0.5);
+  other.add("track", 2.0, 0.25);
   other.add("map", 3.0);
   own.add(other);
+  EXPECT_EQ(own.processor_ms().at("track"), 0.75);
   EXPECT_EQ(own.durations_ms().at("track"), (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(own.durations_ms().at("map"), std::vector<double>{3.0});
 }

@@ -18,11 +18,11 @@ struct Features {
   std::vector<Eigen::Vector2f> raw_px;  // where they are in the picture
   std::vector<Eigen::Vector2f>
       undistorted_px;  // where an ideal pinhole would see them; equal to raw_px if uncalibrated
-  std::vector<float> depth_m;  // along the optical axis, 0 = unknown
-  std::vector<float>
-      right_x_px;           // x in the (virtual) right picture of a rectified pair, NaN = unknown
-  std::vector<int> octave;  // pyramid level, 0 = full size
-  std::vector<float> angle_rad;                  // orientation of the patch
+  std::vector<float> depth_m;     // along the optical axis, 0 = unknown
+  std::vector<float> right_x_px;  // x in the right picture of a rectified pair, real or virtual
+                                  // (baseline_m of stereo.hpp), NaN = unknown
+  std::vector<int> octave;        // pyramid level, 0 = full size
+  std::vector<float> angle_rad;   // orientation of the patch
   std::vector<std::array<std::uint8_t, 3>> rgb;  // colour of the pixel
   cv::Mat descriptors;                           // size() x 32 bytes
 

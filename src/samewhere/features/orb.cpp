@@ -1,48 +1,34 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 #include <utility>
+#include <vector>
 
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
-
+#include <samewhere/core/grey.hpp>
+#include <samewhere/features/corners.hpp>
+#include <samewhere/features/describe.hpp>
 #include <samewhere/features/orb.hpp>
+#include <samewhere/features/pyramid.hpp>
+#include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
 
 namespace samewhere::features {
 namespace {
 
-constexpr int kMinSide_px = 64;  // smaller pictures have no room for a patch on the upper levels
-constexpr int kBorder_px = 19;   // half a patch and its blur
-constexpr int kPatch_px = 31;    // of ORB
-// More than most pictures have: the strongest corners must not crowd out a quiet part before they
-// are spread.
-constexpr int kMaxDetected = 10000;
-
-// Levels that still have room for a patch and its border.
-int num_usable_levels(const cv::Size& size_px, const Config& config) {
-  const double room = std::min(size_px.width, size_px.height) / static_cast<double>(kMinSide_px);
-  const double levels = std::floor(std::log(room) / std::log(config.scale_factor)) + 1.0;
-  return static_cast<int>(std::clamp(levels, 1.0, static_cast<double>(config.num_levels)));
-}
-
-bool is_stronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
-  if (a.response != b.response) return a.response > b.response;
-  return std::tuple(a.octave, a.pt.y, a.pt.x) < std::tuple(b.octave, b.pt.y, b.pt.x);
-}
+// The second picture of a pair gives more features, so that the corners chosen in the first are
+// among them.
+constexpr int kRightPerLeft = 3;
 
 // 0 where the sensor saw nothing.
-float depth_at(const cv::Mat& depth_m, const cv::Point2f& pixel) {
-  const int x = std::clamp(static_cast<int>(std::lround(pixel.x)), 0, depth_m.cols - 1);
-  const int y = std::clamp(static_cast<int>(std::lround(pixel.y)), 0, depth_m.rows - 1);
+float depth_at(const cv::Mat& depth_m, const Eigen::Vector2f& pixel) {
+  const int x = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, depth_m.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, depth_m.rows - 1);
   return depth_m.at<float>(y, x);
 }
 
-std::array<std::uint8_t, 3> colour_at(const cv::Mat& image, const cv::Point2f& pixel) {
-  const int x = std::clamp(static_cast<int>(std::lround(pixel.x)), 0, image.cols - 1);
-  const int y = std::clamp(static_cast<int>(std::lround(pixel.y)), 0, image.rows - 1);
+std::array<std::uint8_t, 3> colour_at(const cv::Mat& image, const Eigen::Vector2f& pixel) {
+  const int x = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, image.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, image.rows - 1);
   if (image.channels() == 1) {
     const std::uint8_t grey = image.at<std::uint8_t>(y, x);
     return {grey, grey, grey};
@@ -51,70 +37,86 @@ std::array<std::uint8_t, 3> colour_at(const cv::Mat& image, const cv::Point2f& p
   return {bgr[2], bgr[1], bgr[0]};
 }
 
-void append(Features& features, const cv::KeyPoint& keypoint, const core::Frame& frame,
-            const Config& config) {
-  const Eigen::Vector2d raw(keypoint.pt.x, keypoint.pt.y);
-  const bool is_calibrated = frame.rig->is_calibrated();
-  const Eigen::Vector2d undistorted =
-      is_calibrated ? geometry::undistort(frame.rig->cameras[0], raw) : raw;
-  const float depth_m = frame.depth_m ? depth_at(*frame.depth_m, keypoint.pt) : 0.0F;
-  double right_x_px = std::numeric_limits<double>::quiet_NaN();
-  if (depth_m > 0.0F && is_calibrated) {
-    const double disparity_px =
-        config.virtual_baseline_m * geometry::pinhole(frame.rig->cameras[0]).fx_px / depth_m;
-    right_x_px = undistorted.x() - disparity_px;
+// What can be said of the corners of a pyramid without its camera.
+Features features_of(const std::vector<cv::Mat>& levels, const Config& config) {
+  std::vector<Corner> corners;
+  std::vector<cv::Mat> blurred;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const auto found = find_corners(levels[i], static_cast<int>(i), config);
+    corners.insert(corners.end(), found.begin(), found.end());
+    blurred.push_back(blurred_for_descriptors(levels[i]));
   }
-  features.raw_px.push_back(raw.cast<float>());
-  features.undistorted_px.push_back(undistorted.cast<float>());
-  features.depth_m.push_back(depth_m);
-  features.right_x_px.push_back(static_cast<float>(right_x_px));
-  features.rgb.push_back(colour_at(frame.images[0], keypoint.pt));
-  features.octave.push_back(keypoint.octave);
-  features.angle_rad.push_back(keypoint.angle * std::numbers::pi_v<float> / 180.0F);
+  corners = spread_evenly(corners, config);
+  Features features;
+  features.descriptors = cv::Mat(static_cast<int>(corners.size()), kDescriptorBytes, CV_8U);
+  for (const Corner& whole : corners) {
+    const auto level = static_cast<std::size_t>(whole.level);
+    const Corner corner = with_subpixel(levels[level], whole);
+    const float angle_rad = orientation_rad(levels[level], corner.level_px);
+    describe(blurred[level], corner.level_px, angle_rad, features.descriptors.ptr(features.size()));
+    features.raw_px.push_back(full_from_level(corner.level_px, levels[level], levels[0]));
+    features.octave.push_back(corner.level);
+    features.angle_rad.push_back(angle_rad);
+  }
+  return features;
+}
+
+// Where an ideal camera would see them, and in which colour they are.
+void add_camera(Features& features, const core::Frame& frame) {
+  for (const Eigen::Vector2f& raw_px : features.raw_px) {
+    features.undistorted_px.push_back(
+        frame.rig->is_calibrated()
+            ? Eigen::Vector2f(
+                  geometry::undistort(frame.rig->cameras[0], raw_px.cast<double>()).cast<float>())
+            : raw_px);
+    features.rgb.push_back(colour_at(frame.images[0], raw_px));
+  }
+}
+
+// Focal length times baseline: disparity times depth.
+double disparity_px_m(const core::Rig& rig, const Config& config) {
+  return geometry::pinhole(rig.cameras[0]).fx_px * baseline_m(rig, config);
+}
+
+void add_measured_depth(Features& features, const core::Frame& frame, const Config& config) {
+  for (std::size_t i = 0; i < features.raw_px.size(); ++i) {
+    const float depth_m = depth_at(*frame.depth_m, features.raw_px[i]);
+    features.depth_m[i] = depth_m;
+    if (depth_m <= 0.0F || !frame.rig->is_calibrated()) continue;
+    const double disparity_px = disparity_px_m(*frame.rig, config) / depth_m;
+    features.right_x_px[i] = static_cast<float>(features.undistorted_px[i].x() - disparity_px);
+  }
+}
+
+void add_stereo_depth(Features& features, const std::vector<cv::Mat>& levels,
+                      const core::Frame& frame, const Config& config) {
+  const std::vector<cv::Mat> right_levels = pyramid(core::as_grey(frame.images[1]), config);
+  Config generous = config;
+  generous.num_features *= kRightPerLeft;
+  const Features right = features_of(right_levels, generous);
+  features.right_x_px = match_stereo({levels, features}, {right_levels, right}, *frame.rig, config);
+  const double depth_times_disparity = disparity_px_m(*frame.rig, config);
+  for (std::size_t i = 0; i < features.raw_px.size(); ++i) {
+    const float disparity_px = features.raw_px[i].x() - features.right_x_px[i];
+    if (std::isnan(disparity_px)) continue;
+    features.depth_m[i] = static_cast<float>(depth_times_disparity / disparity_px);
+  }
 }
 
 }  // namespace
 
-cv::Mat as_grey(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
-
-std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> keypoints, int count,
-                                        int cell_px) {
-  std::sort(keypoints.begin(), keypoints.end(), is_stronger);
-  std::map<std::pair<int, int>, int> taken_of_cell;
-  std::vector<std::pair<int, std::size_t>> rank_and_index;
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    const std::pair cell(static_cast<int>(keypoints[i].pt.x) / cell_px,
-                         static_cast<int>(keypoints[i].pt.y) / cell_px);
-    rank_and_index.emplace_back(taken_of_cell[cell]++, i);
-  }
-  std::sort(rank_and_index.begin(), rank_and_index.end());
-  const auto kept = std::min(rank_and_index.size(), static_cast<std::size_t>(count));
-  std::vector<cv::KeyPoint> spread;
-  spread.reserve(kept);
-  for (std::size_t i = 0; i < kept; ++i) spread.push_back(keypoints[rank_and_index[i].second]);
-  return spread;
-}
-
 View extract(const core::Frame& frame, const Config& config) {
-  const cv::Mat grey = as_grey(frame.images.at(0));
-  auto features = std::make_shared<Features>();
-  if (std::min(grey.rows, grey.cols) >= kMinSide_px) {
-    const int num_levels = num_usable_levels(grey.size(), config);
-    const auto orb = cv::ORB::create(
-        std::max(kMaxDetected, config.num_features), static_cast<float>(config.scale_factor),
-        num_levels, kBorder_px, 0, 2, cv::ORB::HARRIS_SCORE, kPatch_px, config.min_corner_contrast);
-    std::vector<cv::KeyPoint> keypoints;
-    orb->detect(grey, keypoints);
-    keypoints = spread_evenly(std::move(keypoints), config.num_features, config.cell_px);
-    orb->compute(grey, keypoints, features->descriptors);
-    for (const auto& keypoint : keypoints) append(*features, keypoint, frame, config);
+  const cv::Mat grey = core::as_grey(frame.images.at(0));
+  const std::vector<cv::Mat> levels = pyramid(grey, config);
+  auto features = std::make_shared<Features>(features_of(levels, config));
+  add_camera(*features, frame);
+  features->depth_m.assign(features->raw_px.size(), 0.0F);
+  features->right_x_px.assign(features->raw_px.size(), std::numeric_limits<float>::quiet_NaN());
+  if (frame.depth_m) {
+    add_measured_depth(*features, frame, config);
+  } else if (is_stereo(frame)) {
+    add_stereo_depth(*features, levels, frame, config);
   }
-  if (features->descriptors.empty()) features->descriptors = cv::Mat(0, 32, CV_8U);
   return {frame.id, frame.stamp_s, frame.rig, grey.size(), std::move(features)};
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/geometry/normalising_transform.hpp>
 #include <samewhere/geometry/polynomial.hpp>
 #include <samewhere/geometry/two_view.hpp>
 
@@ -11,21 +12,6 @@ namespace samewhere::geometry {
 namespace {
 
 using Rows9 = Eigen::Matrix<double, Eigen::Dynamic, 9>;
-
-// Moves the points' mean to 0 and their mean distance to sqrt(2), so that the equations are well
-// scaled.
-Eigen::Matrix3d normalising_transform(const std::vector<Eigen::Vector2d>& points) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const auto& p : points) mean += p;
-  mean /= static_cast<double>(points.size());
-  double distance = 0.0;
-  for (const auto& p : points) distance += (p - mean).norm();
-  distance /= static_cast<double>(points.size());
-  const double scale = distance > 0.0 ? std::sqrt(2.0) / distance : 1.0;
-  Eigen::Matrix3d transform;
-  transform << scale, 0.0, -scale * mean.x(), 0.0, scale, -scale * mean.y(), 0.0, 0.0, 1.0;
-  return transform;
-}
 
 // One row per pair: second' F first = 0 as an equation in the row-major entries of F, between
 // normalised points.

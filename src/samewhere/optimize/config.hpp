@@ -7,6 +7,7 @@ namespace samewhere::optimize {
 struct Config {
   int motion_rounds = 4;
   int motion_iterations = 8;
+  int bundle_iterations = 8;
   int graph_iterations = 50;
   double loop_huber = 3.0;
 };
@@ -18,6 +19,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .max = 20});
   visit("motion_iterations", config.motion_iterations,
         {.help = "Gauss-Newton steps per round", .min = 1, .max = 100});
+  visit("bundle_iterations", config.bundle_iterations,
+        {.help = "iterations of each of the two rounds of a bundle at most", .min = 1, .max = 200});
   visit("graph_iterations", config.graph_iterations,
         {.help = "iterations of the pose graph at most", .min = 1, .max = 1000});
   visit("loop_huber", config.loop_huber,

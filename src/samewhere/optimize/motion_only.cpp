@@ -5,13 +5,12 @@
 
 #include <samewhere/optimize/manifold.hpp>
 #include <samewhere/optimize/motion_only.hpp>
+#include <samewhere/optimize/reprojection.hpp>
 
 namespace samewhere::optimize {
 namespace {
 
-constexpr double kChiSquare95[] = {0.0, 0.0, 5.991, 7.815};  // by degrees of freedom
 constexpr int kMinInliers = 6;
-constexpr double kMinDepth_m = 0.05;
 constexpr double kConverged = 1e-8;
 
 struct NormalEquations {
@@ -69,32 +68,13 @@ void sort_inliers(const MotionProblem& problem, MotionResult& result) {
 
 MotionResidual motion_residual(const MotionProblem& problem, const MotionObservation& observation,
                                const core::Rigid3& camera_from_world) {
-  MotionResidual r;
   const Eigen::Vector3d rotated = camera_from_world.rotation * observation.point_in_world;
-  const Eigen::Vector3d p = rotated + camera_from_world.translation;
-  if (p.z() < kMinDepth_m) return r;
-
-  const core::PinholeRadtan& c = problem.intrinsics;
-  const double inverse_z = 1.0 / p.z();
-  const double x = c.fx_px * p.x() * inverse_z + c.cx_px;
-  const double y = c.fy_px * p.y() * inverse_z + c.cy_px;
-  const double disparity = c.fx_px * problem.baseline_m * inverse_z;
-  const bool has_depth = std::isfinite(observation.right_x_px);
-  r.size = has_depth ? 3 : 2;
-  r.value << x - observation.undistorted_px.x(), y - observation.undistorted_px.y(),
-      has_depth ? x - disparity - observation.right_x_px : 0.0;
-
-  Eigen::Matrix3d by_point;
-  by_point.row(0) << c.fx_px * inverse_z, 0.0, -c.fx_px * p.x() * inverse_z * inverse_z;
-  by_point.row(1) << 0.0, c.fy_px * inverse_z, -c.fy_px * p.y() * inverse_z * inverse_z;
-  by_point.row(2) = by_point.row(0);
-  by_point(2, 2) += disparity * inverse_z;
-  if (!has_depth) by_point.row(2).setZero();
-  r.jacobian.leftCols<3>() = by_point;
-  r.jacobian.rightCols<3>() = -by_point * core::skew(rotated);
-
-  r.value /= observation.sigma_px;
-  r.jacobian /= observation.sigma_px;
+  const Reprojection reprojection =
+      reproject(problem.intrinsics, problem.baseline_m, rotated + camera_from_world.translation,
+                {observation.undistorted_px, observation.right_x_px, observation.sigma_px});
+  MotionResidual r{reprojection.size, reprojection.value};
+  r.jacobian.leftCols<3>() = reprojection.by_point;
+  r.jacobian.rightCols<3>() = -reprojection.by_point * core::skew(rotated);
   return r;
 }
 

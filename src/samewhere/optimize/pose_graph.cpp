@@ -1,60 +1,9 @@
-#include <array>
-
-#include <ceres/ceres.h>
-
 #include <samewhere/core/errors.hpp>
-#include <samewhere/optimize/manifold.hpp>
+#include <samewhere/optimize/pose_block.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
 
 namespace samewhere::optimize {
 namespace {
-
-using Block = std::array<double, 7>;  // qx qy qz qw tx ty tz
-
-Block to_block(const core::Rigid3& pose) {
-  const auto& q = pose.rotation;
-  const auto& t = pose.translation;
-  return {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()};
-}
-
-core::Rigid3 from_block(const double* block) {
-  return {Eigen::Quaterniond(block[3], block[0], block[1], block[2]),
-          {block[4], block[5], block[6]}};
-}
-
-// retract() for Ceres. Its Jacobian is declared as [I; 0], and EdgeCost puts the derivative by the
-// tangent into the first six columns: Ceres only ever uses the product of the two, and no
-// derivative by a quaternion is needed.
-class PoseManifold : public ceres::Manifold {
- public:
-  int AmbientSize() const override { return 7; }
-  int TangentSize() const override { return 6; }
-
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-    const Block moved = to_block(retract(from_block(x), Eigen::Map<const core::Vector6d>(delta)));
-    std::copy(moved.begin(), moved.end(), x_plus_delta);
-    return true;
-  }
-
-  bool PlusJacobian(const double* /*x*/, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>>(jacobian).setIdentity();
-    return true;
-  }
-
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
-    const core::Rigid3 to = from_block(y);
-    const core::Rigid3 from = from_block(x);
-    Eigen::Map<core::Vector6d> difference(y_minus_x);
-    difference << to.translation - from.translation,
-        core::log_so3(to.rotation * from.rotation.conjugate());
-    return true;
-  }
-
-  bool MinusJacobian(const double* /*x*/, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>(jacobian).setIdentity();
-    return true;
-  }
-};
 
 class EdgeCost : public ceres::SizedCostFunction<6, 7, 7> {
  public:
@@ -67,19 +16,12 @@ class EdgeCost : public ceres::SizedCostFunction<6, 7, 7> {
     whitened = whitening_ * edge_error(edge_, world_from_a, world_from_b);
     if (jacobians == nullptr) return true;
     const EdgeJacobians derivatives = edge_jacobians(edge_, world_from_a, world_from_b);
-    write(whitening_ * derivatives.by_a, jacobians[0]);
-    write(whitening_ * derivatives.by_b, jacobians[1]);
+    write_by_tangent<6>(whitening_ * derivatives.by_a, jacobians[0]);
+    write_by_tangent<6>(whitening_ * derivatives.by_b, jacobians[1]);
     return true;
   }
 
  private:
-  static void write(const core::Matrix6d& by_tangent, double* out) {
-    if (out == nullptr) return;
-    Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>> ambient(out);
-    ambient.leftCols<6>() = by_tangent;
-    ambient.col(6).setZero();
-  }
-
   PoseEdge edge_;
   core::Matrix6d whitening_;
 };
@@ -96,7 +38,7 @@ ceres::Solver::Options solver_options(const Config& config) {
   return options;
 }
 
-void add_edges(ceres::Problem& problem, const PoseGraph& graph, std::vector<Block>& blocks,
+void add_edges(ceres::Problem& problem, const PoseGraph& graph, std::vector<PoseBlock>& blocks,
                const Config& config) {
   for (const auto& edge : graph.edges) {
     const auto is_node = [&](int i) { return i >= 0 && i < static_cast<int>(blocks.size()); };
@@ -138,7 +80,7 @@ EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_fro
 }
 
 PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config) {
-  std::vector<Block> blocks;
+  std::vector<PoseBlock> blocks;
   blocks.reserve(graph.world_from_node.size());
   for (const auto& pose : graph.world_from_node) blocks.push_back(to_block(pose));
 

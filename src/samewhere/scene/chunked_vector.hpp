@@ -10,7 +10,7 @@ namespace samewhere::scene {
 
 // A growing array whose copies share their content: copying costs a pointer per chunk, and writing
 // an element copies its chunk only if another copy holds it too. One thread writes (the owner of
-// the map); copies may be read and dropped anywhere.
+// the map); copies may be read and dropped in any thread.
 template <class T, std::size_t kChunkSize = 32>
 class ChunkedVector {
  public:
@@ -23,11 +23,16 @@ class ChunkedVector {
   }
   const T& back() const { return (*this)[size_ - 1]; }
 
+  // Whether element i of both is one and the same, and so equal without a look at it.
+  bool shares_memory(const ChunkedVector& other, std::size_t i) const {
+    return &(*this)[i] == &other[i];
+  }
+
   // The element, to be written.
   T& edit(std::size_t i) {
     core::require(i < size_, "a ChunkedVector is written inside its size");
     auto& chunk = chunks_[i / kChunkSize];
-    if (chunk.use_count() > 1) chunk = std::make_shared<Chunk>(*chunk);
+    if (!is_held_alone(chunk)) chunk = std::make_shared<Chunk>(*chunk);
     return (*chunk)[i % kChunkSize];
   }
 
@@ -39,6 +44,14 @@ class ChunkedVector {
 
  private:
   using Chunk = std::array<T, kChunkSize>;
+
+  // To look at the count alone would not be enough: taking a share and giving it back makes all
+  // that another thread read, before it dropped its own, happen before what is written next.
+  static bool is_held_alone(const std::shared_ptr<Chunk>& chunk) {
+    constexpr int kOwnAndThis = 2;
+    return std::shared_ptr<Chunk>(chunk).use_count() == kOwnAndThis;
+  }
+
   std::vector<std::shared_ptr<Chunk>> chunks_;
   std::size_t size_ = 0;
 };

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cstring>
-#include <map>
 #include <set>
 
 #include <samewhere/scene/local_map.hpp>
@@ -8,23 +6,13 @@
 namespace samewhere::scene {
 namespace {
 
-// The reference first, then who shares most; ties go to the younger keyframe.
+// The reference first, then who shares most.
 std::vector<core::KeyframeId> neighbourhood(const MapVersion& map, core::KeyframeId reference,
                                             int max_neighbours) {
-  std::map<core::KeyframeId, int> shared;
-  for (const core::LandmarkId id : map.at(reference).slots) {
-    if (!id.is_valid()) continue;
-    for (const auto& observation : map.at(id).observations) ++shared[observation.keyframe];
-  }
-  shared.erase(reference);
-  std::vector<std::pair<int, core::KeyframeId>> ranked;
-  for (const auto& [keyframe, count] : shared) ranked.emplace_back(count, keyframe);
-  std::sort(ranked.rbegin(), ranked.rend());
-
   std::vector<core::KeyframeId> chosen = {reference};
-  for (const auto& [count, keyframe] : ranked) {
+  for (const auto& covisible : covisible_keyframes(map, reference)) {
     if (static_cast<int>(chosen.size()) > max_neighbours) break;
-    chosen.push_back(keyframe);
+    chosen.push_back(covisible.keyframe);
   }
   return chosen;
 }
@@ -38,7 +26,7 @@ LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, int 
       if (id.is_valid()) ids.insert(id);
     }
   }
-  const core::Rigid3 reference_from_world = inverse(map.at(reference).world_from_body);
+  const core::Rigid3 reference_from_world = inverse(world_from_body(map, reference));
   LocalMap local;
   local.reference = reference;
   local.descriptors = cv::Mat(static_cast<int>(ids.size()), 32, CV_8U);

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/scene/map_version.hpp>
 
 namespace samewhere::scene {
@@ -14,8 +17,9 @@ void see_again(MapVersion& map, const Sighting& sighting) {
   const Keyframe& keyframe = map.at(sighting.observation.keyframe);
   const auto slot = static_cast<std::size_t>(sighting.observation.slot);
   core::require(slot < keyframe.slots.size(), "a sighting names a slot of its keyframe");
+  core::require(is_live(landmark) && is_live(keyframe), "a sighting is of what the map shows");
   const core::Rigid3 anchor_from_body =
-      inverse(map.at(landmark.anchor).world_from_body) * keyframe.world_from_body;
+      inverse(world_from_body(map, landmark.anchor)) * keyframe.world_from_body;
   const core::Rigid3& body_from_camera = keyframe.view.rig->body_from_camera[0];
 
   if (const auto point = features::point_in_camera(keyframe.view, sighting.observation.slot)) {
@@ -38,6 +42,95 @@ void see_again(MapVersion& map, const Sighting& sighting) {
   map.keyframes.edit(sighting.observation.keyframe.index()).slots[slot] = landmark.id;
 }
 
+void set_slot(MapVersion& map, const Observation& observation, core::LandmarkId landmark) {
+  map.keyframes.edit(observation.keyframe.index())
+      .slots[static_cast<std::size_t>(observation.slot)] = landmark;
+}
+
+// A landmark that no keyframe shows any more goes.
+void forget(MapVersion& map, const RemovedObservation& removed) {
+  Landmark& landmark = map.landmarks.edit(removed.landmark.index());
+  auto& observations = landmark.observations;
+  const auto found =
+      std::find_if(observations.begin(), observations.end(),
+                   [&](const Observation& o) { return o.keyframe == removed.keyframe; });
+  core::require(found != observations.end(), "an observation that is removed was there");
+  set_slot(map, *found, core::LandmarkId{});
+  observations.erase(found);
+  landmark.is_culled = observations.empty();
+}
+
+// The survivor takes over what the other showed, but for pictures in which it is seen itself.
+void merge(MapVersion& map, const Merge& merge) {
+  core::require(merge.from != merge.to && is_live(map.at(merge.from)) && is_live(map.at(merge.to)),
+                "two landmarks that the map shows are merged");
+  Landmark& to = map.landmarks.edit(merge.to.index());
+  Landmark& from = map.landmarks.edit(merge.from.index());
+  for (const auto& observation : from.observations) {
+    const bool is_seen_itself =
+        std::any_of(to.observations.begin(), to.observations.end(),
+                    [&](const Observation& o) { return o.keyframe == observation.keyframe; });
+    set_slot(map, observation, is_seen_itself ? core::LandmarkId{} : to.id);
+    if (!is_seen_itself) to.observations.push_back(observation);
+  }
+  from.merged_into = to.id;
+  map.merges.push_back(merge);
+}
+
+void cull(MapVersion& map, core::LandmarkId id) {
+  Landmark& landmark = map.landmarks.edit(id.index());
+  if (is_live(landmark)) {
+    for (const auto& observation : landmark.observations)
+      set_slot(map, observation, core::LandmarkId{});
+  }
+  landmark.is_culled = true;
+}
+
+// The odometry of the child becomes that to its grandparent.
+void skip_parent(const MapVersion& map, Keyframe& child) {
+  const Keyframe& parent = map.at(child.odometry->parent);
+  const auto edge_of = [](const OdometryEdge& edge) {
+    return geometry::UncertainPose{edge.parent_from_keyframe, edge.information.inverse()};
+  };
+  const auto joined = compose(edge_of(*parent.odometry), edge_of(*child.odometry));
+  if (parent.refined_parent_from_keyframe || child.refined_parent_from_keyframe)
+    child.refined_parent_from_keyframe = parent_from_keyframe(parent) * parent_from_keyframe(child);
+  child.odometry = {parent.odometry->parent, joined.a_from_b, joined.covariance.inverse()};
+}
+
+void cull(MapVersion& map, core::KeyframeId id) {
+  Keyframe& keyframe = map.keyframes.edit(id.index());
+  core::require(keyframe.odometry.has_value(), "a culled keyframe has odometry to hang on");
+  core::require(std::none_of(map.loops.begin(), map.loops.end(),
+                             [&](const LoopEdge& l) { return l.query == id || l.match == id; }),
+                "a keyframe that a loop edge holds is not culled");
+  for (std::size_t slot = 0; slot < keyframe.slots.size(); ++slot) {
+    if (keyframe.slots[slot].is_valid()) forget(map, {keyframe.slots[slot], id});
+  }
+  keyframe.culled_parent_from_keyframe =
+      inverse(world_from_body(map, keyframe.odometry->parent)) * keyframe.world_from_body;
+  for (std::size_t i = id.index() + 1; i < map.keyframes.size(); ++i) {
+    const Keyframe& child = map.keyframes[i];
+    if (is_live(child) && child.odometry && child.odometry->parent == id)
+      skip_parent(map, map.keyframes.edit(i));
+  }
+}
+
+void move(MapVersion& map, const Edit& edit) {
+  for (const auto& change : edit.pose_changes) {
+    Keyframe& keyframe = map.keyframes.edit(change.keyframe.index());
+    core::require(is_live(keyframe), "a culled keyframe moves with its parent");
+    keyframe.world_from_body = change.new_from_old * keyframe.world_from_body;
+    keyframe.world_from_body.rotation.normalize();
+  }
+  for (const auto& refinement : edit.refinements) {
+    Keyframe& keyframe = map.keyframes.edit(refinement.keyframe.index());
+    keyframe.refined_parent_from_keyframe = refinement.parent_from_keyframe;
+  }
+  for (const auto& change : edit.landmark_changes)
+    map.landmarks.edit(change.landmark.index()).position_in_anchor = change.position_in_anchor;
+}
+
 }  // namespace
 
 MapVersion apply(MapVersion map, const Edit& edit) {
@@ -52,10 +145,11 @@ MapVersion apply(MapVersion map, const Edit& edit) {
     map.landmarks.push_back(landmark);
   }
   for (const auto& sighting : edit.sightings) see_again(map, sighting);
-  for (const auto& change : edit.pose_changes) {
-    Keyframe& keyframe = map.keyframes.edit(change.keyframe.index());
-    keyframe.world_from_body = change.new_from_old * keyframe.world_from_body;
-  }
+  move(map, edit);
+  for (const auto& removed : edit.removed_observations) forget(map, removed);
+  for (const auto& made : edit.merges) merge(map, made);
+  for (const auto& id : edit.culled_landmarks) cull(map, id);
+  for (const auto& id : edit.culled_keyframes) cull(map, id);
   map.loops.insert(map.loops.end(), edit.loops.begin(), edit.loops.end());
   ++map.number;
   return map;
@@ -64,7 +158,49 @@ MapVersion apply(MapVersion map, const Edit& edit) {
 double weight_of_depth(double depth_m) { return 1.0 / std::pow(depth_m, 4.0); }
 
 Eigen::Vector3d position_in_world(const MapVersion& map, const Landmark& landmark) {
-  return map.at(landmark.anchor).world_from_body * landmark.position_in_anchor;
+  return world_from_body(map, landmark.anchor) * landmark.position_in_anchor;
+}
+
+core::Rigid3 parent_from_keyframe(const Keyframe& keyframe) {
+  core::require(keyframe.odometry.has_value(), "the first keyframe of a session has no parent");
+  return keyframe.refined_parent_from_keyframe.value_or(keyframe.odometry->parent_from_keyframe);
+}
+
+Holder holder_of(const MapVersion& map, core::KeyframeId id) {
+  Holder holder{id, {}};
+  while (!is_live(map.at(holder.keyframe))) {
+    const Keyframe& culled = map.at(holder.keyframe);
+    holder = {culled.odometry->parent,
+              *culled.culled_parent_from_keyframe * holder.holder_from_keyframe};
+  }
+  return holder;
+}
+
+core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id) {
+  const Keyframe& keyframe = map.at(id);
+  if (is_live(keyframe)) return keyframe.world_from_body;
+  const Holder holder = holder_of(map, id);
+  return map.at(holder.keyframe).world_from_body * holder.holder_from_keyframe;
+}
+
+const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id) {
+  while (map.at(id).merged_into.is_valid()) id = map.at(id).merged_into;
+  return map.at(id);
+}
+
+std::vector<Covisible> covisible_keyframes(const MapVersion& map, core::KeyframeId id) {
+  std::map<core::KeyframeId, int> shared;
+  for (const core::LandmarkId landmark : map.at(id).slots) {
+    if (!landmark.is_valid()) continue;
+    for (const auto& observation : map.at(landmark).observations) ++shared[observation.keyframe];
+  }
+  shared.erase(id);
+  std::vector<Covisible> ranked;
+  for (const auto& [keyframe, count] : shared) ranked.push_back({keyframe, count});
+  std::sort(ranked.begin(), ranked.end(), [](const Covisible& a, const Covisible& b) {
+    return std::pair(a.num_shared, a.keyframe) > std::pair(b.num_shared, b.keyframe);
+  });
+  return ranked;
 }
 
 std::vector<core::Rigid3> odometry_poses(const MapVersion& map) {
@@ -73,7 +209,7 @@ std::vector<core::Rigid3> odometry_poses(const MapVersion& map) {
     const Keyframe& keyframe = map.keyframes[i];
     world_from_body.push_back(keyframe.odometry
                                   ? world_from_body[keyframe.odometry->parent.index()] *
-                                        keyframe.odometry->parent_from_keyframe
+                                        parent_from_keyframe(keyframe)
                                   : keyframe.world_from_body);
   }
   return world_from_body;

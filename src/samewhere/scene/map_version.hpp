@@ -32,8 +32,15 @@ struct Landmark {
   double weight = 0.0;           // sum of the inverse variances of its depths
   OrbDescriptor descriptor{};    // as seen last
   std::array<std::uint8_t, 3> rgb{};
-  std::vector<Observation> observations;  // in the order of their keyframes
+  std::vector<Observation> observations;  // one per keyframe at most
+  core::LandmarkId merged_into;           // valid: the same point as that one, see Merge
+  bool is_culled = false;                 // found to be no good; only its id lives on
 };
+
+// Whether the landmark is part of the map today.
+inline bool is_live(const Landmark& landmark) {
+  return !landmark.is_culled && !landmark.merged_into.is_valid();
+}
 
 // What odometry measured between a keyframe and the one it was tracked from.
 struct OdometryEdge {
@@ -44,11 +51,18 @@ struct OdometryEdge {
 
 struct Keyframe {
   core::KeyframeId id;
-  core::Rigid3 world_from_body;
+  core::Rigid3 world_from_body;          // of a culled one: ask world_from_body(map, id)
   std::optional<OdometryEdge> odometry;  // none: the first of its session
   features::View view;                   // immutable picture of the past
   std::vector<core::LandmarkId> slots;   // one per feature; invalid = shows no landmark
+  // Where a bundle that saw both found it relative to its odometry parent: better than odometry,
+  // and as free of loops.
+  std::optional<core::Rigid3> refined_parent_from_keyframe;
+  // Set: culled. It shows no landmark any more; its pose hangs on its odometry parent.
+  std::optional<core::Rigid3> culled_parent_from_keyframe;
 };
+
+inline bool is_live(const Keyframe& keyframe) { return !keyframe.culled_parent_from_keyframe; }
 
 // An accepted loop between two keyframes.
 struct LoopEdge {
@@ -59,12 +73,29 @@ struct LoopEdge {
   core::CandidateId cause;
 };
 
+// How many keyframes or landmarks are part of the map today.
+template <class Row>
+std::size_t num_live(const ChunkedVector<Row>& rows) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) count += is_live(rows[i]) ? 1 : 0;
+  return count;
+}
+
+// Two landmarks are one point. `from` keeps its row and its list of observations, so that the merge
+// can be taken back by its cause; the map shows `to` in their place.
+struct Merge {
+  core::LandmarkId from;
+  core::LandmarkId to;
+  core::CandidateId cause;  // the loop that brought them together; invalid: mapping alone
+};
+
 // The map at one moment. Ids are positions: keyframe k is keyframes[k].
 struct MapVersion {
   std::uint64_t number = 0;  // how many edits made it
   ChunkedVector<Keyframe> keyframes;
   ChunkedVector<Landmark> landmarks;
   std::vector<LoopEdge> loops;
+  ChunkedVector<Merge> merges;  // in the order they were made
 
   const Keyframe& at(core::KeyframeId id) const { return keyframes[id.index()]; }
   const Landmark& at(core::LandmarkId id) const { return landmarks[id.index()]; }
@@ -82,17 +113,43 @@ struct PoseChange {
   core::Rigid3 new_from_old;
 };
 
-// A change of the map, as a value: what is added and what moves.
+// A bundle found where the keyframe is relative to its odometry parent.
+struct Refinement {
+  core::KeyframeId keyframe;
+  core::Rigid3 parent_from_keyframe;
+};
+
+// The landmark is there instead.
+struct LandmarkChange {
+  core::LandmarkId landmark;
+  Eigen::Vector3d position_in_anchor = Eigen::Vector3d::Zero();
+};
+
+// A sighting was a mistake: the feature shows no landmark any more.
+struct RemovedObservation {
+  core::LandmarkId landmark;
+  core::KeyframeId keyframe;
+};
+
+// A change of the map, as a value: what is added, what moves and what goes. Applied in the order of
+// the fields.
 struct Edit {
   std::vector<Keyframe> keyframes;
   std::vector<Landmark> landmarks;
   std::vector<Sighting> sightings;
   std::vector<PoseChange> pose_changes;
+  std::vector<Refinement> refinements;
+  std::vector<LandmarkChange> landmark_changes;
+  std::vector<RemovedObservation> removed_observations;
+  std::vector<Merge> merges;
+  std::vector<core::LandmarkId> culled_landmarks;
+  std::vector<core::KeyframeId> culled_keyframes;
   std::vector<LoopEdge> loops;
 };
 
-// The version after the edit. Throws ContractError if ids do not continue the map's or name what is
-// not there.
+// The version after the edit. Ids are positions and stay: what is merged or culled is marked, not
+// removed. Throws ContractError if ids do not continue the map's or name what is not there, for a
+// culled keyframe without odometry (nothing would hold it) and for one that a loop edge holds.
 MapVersion apply(MapVersion map, const Edit& edit);
 
 // Weight of a depth in a landmark's mean: the variance of a triangulated depth grows with its
@@ -101,8 +158,35 @@ double weight_of_depth(double depth_m);
 
 Eigen::Vector3d position_in_world(const MapVersion& map, const Landmark& landmark);
 
-// Pose of every keyframe by odometry alone, as if no loop had ever been closed: the edges composed
-// from the first on.
+// Where a keyframe is relative to its odometry parent, as well as is known without loops: by
+// bundles if they saw both, else by odometry. ContractError without a parent.
+core::Rigid3 parent_from_keyframe(const Keyframe& keyframe);
+
+// Pose of a keyframe, culled or not.
+core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id);
+
+// Where a keyframe hangs: itself, or the first of its odometry ancestors that is not culled.
+struct Holder {
+  core::KeyframeId keyframe;
+  core::Rigid3 holder_from_keyframe;
+};
+
+Holder holder_of(const MapVersion& map, core::KeyframeId id);
+
+// The landmark that is shown in place of this one: itself unless it was merged. It may be culled.
+const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id);
+
+// A keyframe and how many landmarks it shares with another.
+struct Covisible {
+  core::KeyframeId keyframe;
+  int num_shared = 0;
+};
+
+// The keyframes that share landmarks with this one, most first; ties go to the younger.
+std::vector<Covisible> covisible_keyframes(const MapVersion& map, core::KeyframeId id);
+
+// Pose of every keyframe, culled ones too, by odometry alone, as if no loop had ever been closed:
+// the edges composed from the first on.
 std::vector<core::Rigid3> odometry_poses(const MapVersion& map);
 
 }  // namespace samewhere::scene

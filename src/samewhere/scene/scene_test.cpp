@@ -105,6 +105,116 @@ TEST_F(TwoKeyframes, OdometryPosesIgnoreCorrections) {
   EXPECT_LT((odometry_poses(moved)[1].translation - Eigen::Vector3d(0.5, 0.0, 0.0)).norm(), 1e-12);
 }
 
+TEST_F(TwoKeyframes, AMergedLandmarkKeepsItsRowAndTheOtherShowsInItsPlace) {
+  Edit more;
+  more.landmarks = {landmark(1, 0, {0.0, 0.0, 2.0})};
+  more.sightings = {{core::LandmarkId(0), {core::KeyframeId(0), 3}},
+                    {core::LandmarkId(1), {core::KeyframeId(0), 4}},
+                    {core::LandmarkId(1), {core::KeyframeId(1), 0}}};
+  const MapVersion before = apply(map_, more);
+  Edit one;
+  one.merges = {{core::LandmarkId(1), core::LandmarkId(0), core::CandidateId(7)}};
+  const MapVersion merged = apply(before, one);
+  EXPECT_FALSE(is_live(merged.landmarks[1]));
+  EXPECT_EQ(merged.landmarks[1].observations.size(), 2U) << "kept, to take the merge back";
+  EXPECT_EQ(&survivor_of(merged, core::LandmarkId(1)), &merged.landmarks[0]);
+  EXPECT_EQ(merged.merges[0].cause, core::CandidateId(7));
+  EXPECT_EQ(merged.keyframes[1].slots[0], core::LandmarkId(0));
+  EXPECT_EQ(merged.landmarks[0].observations.size(), 2U);
+  EXPECT_FALSE(merged.keyframes[0].slots[4].is_valid()) << "keyframe 0 showed the survivor itself";
+  EXPECT_EQ(merged.keyframes[0].slots[3], core::LandmarkId(0));
+  EXPECT_THROW(apply(merged, one), core::ContractError) << "merged once";
+}
+
+TEST_F(TwoKeyframes, ACulledLandmarkAndOneThatNobodySeesAreNotShown) {
+  Edit seen;
+  seen.landmarks = {landmark(1, 0, {0.0, 0.0, 2.0})};
+  seen.sightings = {{core::LandmarkId(0), {core::KeyframeId(1), 0}},
+                    {core::LandmarkId(1), {core::KeyframeId(1), 1}}};
+  const MapVersion before = apply(map_, seen);
+  EXPECT_EQ(build_local_map(before, core::KeyframeId(1), 5).size(), 2);
+  Edit gone;
+  gone.culled_landmarks = {core::LandmarkId(0)};
+  gone.removed_observations = {{core::LandmarkId(1), core::KeyframeId(1)}};
+  const MapVersion after = apply(before, gone);
+  EXPECT_EQ(build_local_map(after, core::KeyframeId(1), 5).size(), 0);
+  EXPECT_EQ(num_live(after.landmarks), 0U);
+  EXPECT_EQ(after.landmarks.size(), 2U) << "ids are positions";
+  EXPECT_THROW(apply(after, gone), core::ContractError) << "removed once";
+}
+
+// A third keyframe that was tracked from the second.
+MapVersion with_third(const MapVersion& map, const features::View& view) {
+  Edit edit;
+  edit.keyframes = {keyframe(2, view,
+                             map.keyframes[1].world_from_body *
+                                 core::Rigid3{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.4}})};
+  edit.keyframes[0].odometry = {core::KeyframeId(1),
+                                {Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.3}},
+                                4.0 * core::Matrix6d::Identity()};
+  return apply(map, edit);
+}
+
+TEST_F(TwoKeyframes, ACulledKeyframeHangsOnItsParentAndHandsItsOdometryOn) {
+  Edit edit;
+  edit.sightings = {{core::LandmarkId(0), {core::KeyframeId(1), 0}}};
+  edit.culled_keyframes = {core::KeyframeId(1)};
+  const MapVersion three = with_third(map_, view_);
+  const MapVersion culled = apply(three, edit);
+  const auto pose_of = [&](std::uint64_t i) {
+    return world_from_body(culled, core::KeyframeId(i)).translation;
+  };
+  EXPECT_LT((pose_of(1) - Eigen::Vector3d(0.5, 0.0, 0.0)).norm(), 1e-12);
+  EXPECT_FALSE(is_live(culled.landmarks[0])) << "nobody else saw it";
+  const OdometryEdge& edge = *culled.keyframes[2].odometry;
+  EXPECT_EQ(edge.parent, core::KeyframeId(0));
+  EXPECT_LT((edge.parent_from_keyframe.translation - Eigen::Vector3d(0.5, 0.0, 0.3)).norm(), 1e-12);
+  EXPECT_LT(edge.information(0, 0), 1.0) << "two errors add up";
+  const auto odometry = odometry_poses(culled);
+  EXPECT_EQ(odometry[1].translation, odometry_poses(three)[1].translation);
+  EXPECT_LT((odometry[2].translation - odometry_poses(three)[2].translation).norm(), 1e-12);
+
+  Edit move;
+  move.pose_changes = {{core::KeyframeId(0), {Eigen::Quaterniond::Identity(), {0.0, 1.0, 0.0}}}};
+  const MapVersion moved = apply(culled, move);
+  EXPECT_LT(
+      (world_from_body(moved, core::KeyframeId(1)).translation - Eigen::Vector3d(0.5, 1.0, 0.0))
+          .norm(),
+      1e-12)
+      << "with its parent";
+  EXPECT_EQ(holder_of(moved, core::KeyframeId(1)).keyframe, core::KeyframeId(0));
+  move.pose_changes[0].keyframe = core::KeyframeId(1);
+  EXPECT_THROW(apply(culled, move), core::ContractError) << "not by itself";
+}
+
+TEST_F(TwoKeyframes, ARefinementOutlivesTheKeyframeItWentThrough) {
+  const core::Rigid3 refined{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.4}};
+  Edit refine;
+  refine.refinements = {{core::KeyframeId(2), refined}};
+  const MapVersion three = apply(with_third(map_, view_), refine);
+  EXPECT_EQ(three.keyframes[2].odometry->parent_from_keyframe.translation.z(), 0.3)
+      << "what odometry measured stays";
+  EXPECT_EQ(parent_from_keyframe(three.keyframes[2]).translation.z(), 0.4);
+  Edit edit;
+  edit.culled_keyframes = {core::KeyframeId(1)};
+  const MapVersion culled = apply(three, edit);
+  EXPECT_LT((parent_from_keyframe(culled.keyframes[2]).translation - Eigen::Vector3d(0.5, 0.0, 0.4))
+                .norm(),
+            1e-12);
+}
+
+TEST_F(TwoKeyframes, TheFirstKeyframeAndOneOfALoopCannotGo) {
+  Edit first;
+  first.culled_keyframes = {core::KeyframeId(0)};
+  EXPECT_THROW(apply(map_, first), core::ContractError);
+  Edit loop;
+  loop.loops = {{core::KeyframeId(1), core::KeyframeId(0), {}}};
+  const MapVersion closed = apply(map_, loop);
+  Edit of_loop;
+  of_loop.culled_keyframes = {core::KeyframeId(1)};
+  EXPECT_THROW(apply(closed, of_loop), core::ContractError);
+}
+
 TEST_F(TwoKeyframes, IdsThatDoNotContinueTheMapAreABrokenPromise) {
   Edit edit;
   edit.keyframes = {keyframe(5, view_, {})};

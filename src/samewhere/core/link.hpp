@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include <samewhere/core/channel.hpp>
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/stage_thread.hpp>
+#include <samewhere/core/timing.hpp>
+
+namespace samewhere::core {
+
+// A stage as its only customer sees it: messages go in, answers come out, both in order. How many
+// answers a message has, the two agree on.
+template <class Message, class Answer>
+class Link {
+ public:
+  using Reply = std::function<void(Answer)>;
+  // What the stage does with a message. It may go on working after its last reply.
+  using Serve = std::function<void(Message, const Reply&)>;
+
+  virtual ~Link() = default;
+  virtual void send(Message message) = 0;
+  // The next answer; waits for it. Throws what the stage threw.
+  virtual Answer receive() = 0;
+  // Ends the stage when it has done all that was sent. Throws what the stage threw.
+  virtual void finish() = 0;
+  // Processor time of the stage that is not the customer's own. After finish().
+  virtual double processor_ms() const = 0;
+};
+
+// The stage works on the customer's thread: all that a message asks for is done when send()
+// returns, and the answers wait until they are asked for.
+template <class Message, class Answer>
+class DirectLink : public Link<Message, Answer> {
+ public:
+  using typename Link<Message, Answer>::Serve;
+  explicit DirectLink(Serve serve) : serve_(std::move(serve)) {}
+
+  void send(Message message) override {
+    serve_(std::move(message), [this](Answer answer) { answers_.push_back(std::move(answer)); });
+  }
+  Answer receive() override {
+    require(!answers_.empty(), "an answer is asked for that is to come");
+    Answer answer = std::move(answers_.front());
+    answers_.pop_front();
+    return answer;
+  }
+  void finish() override {}
+  double processor_ms() const override { return 0.0; }
+
+ private:
+  Serve serve_;
+  std::deque<Answer> answers_;
+};
+
+// For tests: called in the stage's thread before each message is served and before each answer is
+// given; `number` counts both together.
+using Dawdle = std::function<void(std::uint64_t number)>;
+
+// The stage works in a thread of its own. No more than `capacity` messages are sent whose answers
+// were not received: then nobody ever waits for room. The destructor waits until the stage has done
+// what was sent; nobody hears its answers.
+template <class Message, class Answer>
+class ThreadLink : public Link<Message, Answer> {
+ public:
+  using typename Link<Message, Answer>::Serve;
+  ThreadLink(Serve serve, std::size_t capacity, Dawdle dawdle)
+      : serve_(std::move(serve)),
+        dawdle_(std::move(dawdle)),
+        messages_(capacity),
+        answers_(capacity),
+        worker_([this] { work(); }) {}
+  ThreadLink(const ThreadLink&) = delete;
+  ThreadLink& operator=(const ThreadLink&) = delete;
+  ~ThreadLink() override { close(); }
+
+  void send(Message message) override {
+    if (!messages_.send(std::move(message))) fail();
+  }
+  Answer receive() override {
+    std::optional<Answer> answer = answers_.receive();
+    if (!answer) fail();
+    return std::move(*answer);
+  }
+  void finish() override {
+    messages_.close();
+    worker_.join();
+  }
+  double processor_ms() const override { return processor_ms_; }
+
+ private:
+  void work() {
+    const Closing closing{*this};
+    std::uint64_t number = 0;
+    const auto reply = [&](Answer answer) {
+      if (dawdle_) dawdle_(number++);
+      answers_.send(std::move(answer));
+    };
+    while (std::optional<Message> message = messages_.receive()) {
+      if (dawdle_) dawdle_(number++);
+      serve_(std::move(*message), reply);
+    }
+    processor_ms_ = thread_processor_ms();
+  }
+
+  [[noreturn]] void fail() {
+    worker_.join();
+    throw ContractError("a stage that has ended is asked no more");
+  }
+
+  void close() {
+    messages_.close();
+    answers_.close();
+  }
+
+  struct Closing {
+    ThreadLink& link;
+    ~Closing() { link.close(); }
+  };
+
+  Serve serve_;
+  Dawdle dawdle_;
+  Channel<Message> messages_;
+  Channel<Answer> answers_;
+  double processor_ms_ = 0.0;
+  WorkerThread worker_;  // last: starts when all above is ready, ends before it
+};
+
+}  // namespace samewhere::core

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
+
+#include <samewhere/core/rig.hpp>
+
+namespace samewhere::geometry {
+
+// A flat checkerboard, told by its inner corners: where four squares meet.
+struct Board {
+  int num_columns = 0;  // of inner corners, at least 3
+  int num_rows = 0;     // at least 3
+  double square_m = 0.0;
+
+  int num_corners() const { return num_columns * num_rows; }
+};
+
+// The inner corners in the board's plane z = 0, row by row, metres.
+std::vector<cv::Point3f> corners_in_board(const Board& board);
+
+// Where a picture (8-bit grey or BGR) shows them, in the same order or from the other end,
+// sub-pixel (Duda and Frese 2018, as in OpenCV). Nothing if the whole board is not found.
+std::optional<std::vector<cv::Point2f>> find_board(const cv::Mat& image, const Board& board);
+
+struct Calibration {
+  core::PinholeRadtan camera;        // k3 stays 0: boards hardly reach where it would show
+  double rmse_px = 0.0;              // reprojection error of all corners
+  std::vector<double> view_rmse_px;  // of each view's
+};
+
+// The camera that saw the board in all views, each the corners of one picture of `size_px`: Zhang's
+// method (2000), refined with k1 k2 p1 p2. Throws InputError for fewer than 3 views, or if the
+// boards of all views are nearly parallel: then no focal length is wrong.
+Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Point2f>>& views,
+                      const cv::Size& size_px);
+
+}  // namespace samewhere::geometry
