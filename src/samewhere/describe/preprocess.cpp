@@ -4,25 +4,16 @@
 #include <opencv2/imgproc.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/grey.hpp>
 #include <samewhere/describe/preprocess.hpp>
 
 namespace samewhere::describe {
-namespace {
-
-cv::Mat grey_of(const cv::Mat& image) {
-  core::require(image.type() == CV_8UC1 || image.type() == CV_8UC3,
-                "a view to describe is 8-bit grey or BGR");
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
-
-}  // namespace
 
 cv::Mat preprocess(const cv::Mat& image, const Config& config) {
   core::require(!image.empty(), "a view to describe has pixels");
-  const cv::Mat grey = grey_of(image);
+  core::require(image.type() == CV_8UC1 || image.type() == CV_8UC3,
+                "a view to describe is 8-bit grey or BGR");
+  const cv::Mat grey = core::as_grey(image);
   const cv::Size size(config.width_px, config.height_px);
   // averaging over the area keeps a shrunk image free of aliasing, but does not enlarge smoothly
   const bool is_shrunk = size.width <= grey.cols && size.height <= grey.rows;

@@ -42,6 +42,23 @@ core::PinholeRadtan read_camera_file(const std::filesystem::path& path) {
   return camera;
 }
 
+core::PinholeRadtan read_camera_file_for(const std::filesystem::path& path, const cv::Size& size_px,
+                                         const std::filesystem::path& picture) {
+  core::PinholeRadtan camera = read_camera_file(path);
+  camera.width_px = size_px.width;
+  camera.height_px = size_px.height;
+  if (is_centre_inside(camera)) return camera;
+  throw core::InputError(fmt::format(
+      "{}: wrong calibration: the centre ({}, {}) lies outside the image, {} is {} x {} pixels",
+      path.string(), camera.cx_px, camera.cy_px, picture.string(), size_px.width, size_px.height));
+}
+
+std::string camera_file_text(const core::PinholeRadtan& camera) {
+  return fmt::format("{} 0 {}\n0 {} {}\n0 0 1\n{} {} {} {} {}\n", camera.fx_px, camera.cx_px,
+                     camera.fy_px, camera.cy_px, camera.k1, camera.k2, camera.p1, camera.p2,
+                     camera.k3);
+}
+
 bool is_centre_inside(const core::PinholeRadtan& camera) {
   return camera.cx_px >= 0.0 && camera.cx_px <= camera.width_px - 1.0 && camera.cy_px >= 0.0 &&
          camera.cy_px <= camera.height_px - 1.0;

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+
+#include <opencv2/core/types.hpp>
 
 #include <samewhere/core/rig.hpp>
 
@@ -10,6 +13,14 @@ namespace samewhere::input {
 // p1 p2 k3. The file says nothing about the image size: width and height are left 0. Throws
 // InputError naming file and line if it is anything else than that.
 core::PinholeRadtan read_camera_file(const std::filesystem::path& path);
+
+// The same for pictures of a size, of which `picture` is one. Throws InputError also if the centre
+// lies outside: then the calibration belongs to other pictures.
+core::PinholeRadtan read_camera_file_for(const std::filesystem::path& path, const cv::Size& size_px,
+                                         const std::filesystem::path& picture);
+
+// The same format: what read_camera_file reads is the camera, to the last digit, but for its size.
+std::string camera_file_text(const core::PinholeRadtan& camera);
 
 // Whether the optical centre lies in the image of width x height: else the calibration belongs to
 // other images.

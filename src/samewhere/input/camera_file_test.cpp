@@ -42,6 +42,29 @@ TEST_F(CameraFile, TheDistortionFollowsInTheOrderK1K2P1P2K3) {
   EXPECT_EQ(camera.k3, 0.5);
 }
 
+TEST_F(CameraFile, WhatIsWrittenIsReadToTheLastDigit) {
+  const core::PinholeRadtan camera{.fx_px = 500.0 / 3.0,
+                                   .fy_px = 1e3 / 7.0,
+                                   .cx_px = 0.1 + 0.2,
+                                   .cy_px = 239.5,
+                                   .k1 = -0.1 / 3.0,
+                                   .k2 = 1e-7 / 3.0,
+                                   .p1 = 2e-5,
+                                   .p2 = -1.0 / 3e4,
+                                   .k3 = 1e22};
+  folder_.write("written.txt", "# a comment\n" + camera_file_text(camera));
+  const core::PinholeRadtan read = read_camera_file(folder_.at("written.txt"));
+  EXPECT_EQ(read.fx_px, camera.fx_px);
+  EXPECT_EQ(read.fy_px, camera.fy_px);
+  EXPECT_EQ(read.cx_px, camera.cx_px);
+  EXPECT_EQ(read.cy_px, camera.cy_px);
+  EXPECT_EQ(read.k1, camera.k1);
+  EXPECT_EQ(read.k2, camera.k2);
+  EXPECT_EQ(read.p1, camera.p1);
+  EXPECT_EQ(read.p2, camera.p2);
+  EXPECT_EQ(read.k3, camera.k3);
+}
+
 TEST_F(CameraFile, WhatIsNoCameraMatrixIsNamedWithItsLine) {
   EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n"), HasSubstr("found 2 rows"));
   EXPECT_THAT(complaint_about(""), HasSubstr("found 0 rows"));

@@ -11,6 +11,7 @@ struct Config {
   double fps = 0.0;           // of recordings without stamps; 0: the format's own
   double depth_factor = 0.0;  // depth units per metre; 0: the format's own
   double max_stamp_difference_s = 0.02;
+  bool depth = true;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
@@ -28,6 +29,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "largest distance in time of pictures that make one frame, s",
          .min = 0.0,
          .max = 1.0});
+  visit("depth", config.depth,
+        {.help = "whether depth images are read; without them a recording is monocular"});
 }
 
 }  // namespace samewhere::input

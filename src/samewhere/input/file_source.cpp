@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/median.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
@@ -12,15 +13,16 @@ namespace {
 
 using core::InputError;
 
-core::PinholeRadtan camera_of_file(const Recording& recording, const cv::Size& size_px) {
-  core::PinholeRadtan camera = read_camera_file(recording.camera_file);
+// A camera of a format that does not say how large its pictures are.
+core::Camera camera_of_size(const core::Camera& unsized_camera, const cv::Size& size_px,
+                            const std::filesystem::path& image) {
+  auto camera = std::get<core::PinholeRadtan>(unsized_camera);
   camera.width_px = size_px.width;
   camera.height_px = size_px.height;
   if (is_centre_inside(camera)) return camera;
   throw InputError(fmt::format(
-      "{}: wrong calibration: the centre ({}, {}) lies outside the image, {} is {} x {} pixels",
-      recording.camera_file.string(), camera.cx_px, camera.cy_px,
-      recording.frames.front().images.front().string(), size_px.width, size_px.height));
+      "{}: wrong calibration: is {} x {} pixels, the centre ({}, {}) of its camera lies outside",
+      image.string(), size_px.width, size_px.height, camera.cx_px, camera.cy_px));
 }
 
 cv::Size size_of(const core::Camera& camera) {
@@ -29,18 +31,23 @@ cv::Size size_of(const core::Camera& camera) {
 }
 
 core::Rig rig_of(const Recording& recording, const std::vector<cv::Size>& sizes_px) {
+  const std::vector<std::filesystem::path>& images = recording.frames.front().images;
   core::Rig rig = recording.rig;
   if (!recording.camera_file.empty()) {
     if (rig.cameras.empty()) rig.body_from_camera = {core::Rigid3{}};
     rig.cameras.resize(std::max<std::size_t>(rig.cameras.size(), 1));
-    rig.cameras.front() = camera_of_file(recording, sizes_px.front());
+    rig.cameras.front() =
+        read_camera_file_for(recording.camera_file, sizes_px.front(), images.front());
   }
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const cv::Size calibrated_px = size_of(rig.cameras[i]);
-    if (calibrated_px == sizes_px[i]) continue;
-    throw InputError(fmt::format("{}: is {} x {} pixels, its camera is calibrated for {} x {}",
-                                 recording.frames.front().images[i].string(), sizes_px[i].width,
-                                 sizes_px[i].height, calibrated_px.width, calibrated_px.height));
+    if (calibrated_px.empty()) {
+      rig.cameras[i] = camera_of_size(rig.cameras[i], sizes_px[i], images[i]);
+    } else if (calibrated_px != sizes_px[i]) {
+      throw InputError(fmt::format("{}: is {} x {} pixels, its camera is calibrated for {} x {}",
+                                   images[i].string(), sizes_px[i].width, sizes_px[i].height,
+                                   calibrated_px.width, calibrated_px.height));
+    }
   }
   return rig;
 }
@@ -57,10 +64,8 @@ double frame_rate_hz(const std::vector<FrameFiles>& frames) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     steps_s.push_back(frames[i].stamp_s - frames[i - 1].stamp_s);
   }
-  if (steps_s.empty()) return 0.0;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return 1.0 / *middle;
+  const auto step_s = core::median(std::move(steps_s));
+  return step_s ? 1.0 / *step_s : 0.0;
 }
 
 }  // namespace
@@ -79,6 +84,7 @@ FileSource::FileSource(std::string name, Recording recording) : recording_(std::
            .format = recording_.format,
            .num_frames = static_cast<int>(recording_.frames.size()),
            .has_depth = has_depth,
+           .num_cameras = static_cast<int>(sizes_px_.size()),
            .is_calibrated = rig_->is_calibrated(),
            .frame_rate_hz = frame_rate_hz(recording_.frames)};
 }

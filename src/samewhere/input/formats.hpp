@@ -29,6 +29,12 @@ std::optional<Recording> find_hololens(const std::filesystem::path& folder, cons
 // One picture a frame and camera: those of cam1 belong to the nearest in time of cam0.
 std::optional<Recording> find_euroc(const std::filesystem::path& folder, const Config& config);
 
+// image_0/ and image_1/ (grey) or else image_2/ and image_3/ (colour) with 000000.png and so on,
+// times.txt (one stamp a line), calib.txt (P0 to P3); poses.txt or ../../poses/NAME.txt (the first
+// three rows of world from camera 0 a line): an odometry sequence of Geiger et al. 2012. The right
+// camera may be missing.
+std::optional<Recording> find_kitti(const std::filesystem::path& folder, const Config& config);
+
 // *.jpg, *.jpeg, *.png in natural order, camera.txt. Stamps count by the last number of the names
 // if that rises from each to the next, else by position.
 std::optional<Recording> find_images(const std::filesystem::path& folder, const Config& config);

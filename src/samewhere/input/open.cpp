@@ -9,6 +9,7 @@
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/formats.hpp>
 #include <samewhere/input/open.hpp>
+#include <samewhere/input/video.hpp>
 
 namespace samewhere::input {
 namespace {
@@ -39,13 +40,14 @@ void check_config(const Config& config) {
   }
   throw InputError(folder.string() +
                    ": holds no known recording; looked for rgb.txt (TUM RGB-D), mav0/ (EuRoC), "
-                   "frame-*.color.png or .jpg (7-Scenes), images/ with depth/, K.txt or poses.txt "
+                   "image_0/ or image_2/ with times.txt (KITTI), frame-*.color.png or .jpg "
+                   "(7-Scenes), images/ with depth/, K.txt or poses.txt "
                    "(HoloLens), *.jpg, *.jpeg or *.png (images)");
 }
 
 Recording read_folder(const path& folder, const Config& config) {
-  for (const auto& find :
-       {&find_tum_rgbd, &find_euroc, &find_seven_scenes, &find_hololens, &find_images}) {
+  for (const auto& find : {&find_tum_rgbd, &find_euroc, &find_kitti, &find_seven_scenes,
+                           &find_hololens, &find_images}) {
     if (std::optional<Recording> recording = find(folder, config)) return *std::move(recording);
   }
   fail_unknown(folder);
@@ -53,9 +55,10 @@ Recording read_folder(const path& folder, const Config& config) {
 
 Recording read_list(const path& list, const Config& config) {
   if (core::read_file(list).find('\0') != std::string::npos) {
-    throw InputError(list.string() +
-                     ": is a binary file, expected a folder or a text file with the path of one "
-                     "image a line");
+    throw InputError(
+        list.string() +
+        ": is a binary file, expected a folder, a text file with the path of one image a "
+        "line, or a video (.mp4, .avi, ...)");
   }
   return read_image_list(list, config);
 }
@@ -69,21 +72,34 @@ std::string name_of(const path& source) {
   return (whole.filename() == "mav0" ? whole.parent_path() : whole).filename().string();
 }
 
+void require_there(const path& source) {
+  if (is_there(source)) return;
+  throw InputError(
+      source.string() +
+      ": does not exist, expected a folder with a recording, a list of images, a video "
+      "or a camera such as /dev/video0");
+}
+
 }  // namespace
 
 Recording read_recording(const path& source, const Config& config) {
   check_config(config);
-  if (!is_there(source)) {
-    throw InputError(source.string() +
-                     ": does not exist, expected a folder with a recording or a list of images");
-  }
+  require_there(source);
   Recording recording = is_folder(source) ? read_folder(source, config) : read_list(source, config);
   if (!config.camera.empty()) recording.camera_file = config.camera;
   if (config.depth_factor > 0.0) recording.depth_units_per_m = config.depth_factor;
+  if (!config.depth) {
+    for (FrameFiles& files : recording.frames) files.depth.clear();
+  }
   return recording;
 }
 
 std::unique_ptr<core::Source> open_source(const path& source, const Config& config) {
+  require_there(source);
+  if (is_camera_device(source) || (is_video_name(source.string()) && !is_folder(source))) {
+    check_config(config);
+    return open_video(source, config);
+  }
   return std::make_unique<FileSource>(name_of(source), read_recording(source, config));
 }
 

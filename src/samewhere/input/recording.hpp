@@ -23,7 +23,9 @@ struct Recording {
   std::string format;
   std::vector<FrameFiles> frames = {};  // all with as many images
   double depth_units_per_m = 1000.0;
-  core::Rig rig = {};                      // no camera in it: the format tells of none
+  // No camera in it: the format tells of none. A camera of 0 x 0 pixels has the size of its
+  // pictures.
+  core::Rig rig = {};
   std::filesystem::path camera_file = {};  // if not empty, it says what camera 0 is
   std::vector<core::ImuSample> imu = {};   // stamps rise
   core::Truth truth = {};

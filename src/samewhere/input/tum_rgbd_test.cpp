@@ -45,6 +45,12 @@ TEST_F(TumRgbd, TheDepthFactorCanBeSet) {
   EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 2.5F);
 }
 
+TEST_F(TumRgbd, DepthCanBeLeftOut) {
+  config_.depth = false;
+  EXPECT_FALSE(open()->info().has_depth);
+  for (const auto& frame : read_all()) EXPECT_FALSE(frame.depth_m);
+}
+
 TEST_F(TumRgbd, ColourAloneIsEnough) {
   for (const char* name : {"depth.txt", "camera.txt", "groundtruth.txt"}) {
     std::filesystem::remove(folder_.at(name));

@@ -37,9 +37,19 @@ void Retriever::add(const core::Descriptor& descriptor) {
   describer_checksum_ = descriptor.describer_checksum;
 }
 
+core::Descriptor Retriever::view(int position) const {
+  const std::span<const float> unit = store_.vector(position);
+  return {store_.frame(position), {unit.begin(), unit.end()}, *describer_checksum_};
+}
+
 std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor) const {
+  return search(descriptor, config_.window_frames);
+}
+
+std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor,
+                                         int window_frames) const {
   check(descriptor);
-  const int num_allowed = store_.num_older(descriptor.frame, config_.window_frames);
+  const int num_allowed = store_.num_older(descriptor.frame, window_frames);
   std::vector<FoundView> found;
   for (const ScoredPosition& best : best_places(store_, scored(descriptor, num_allowed), config_)) {
     const std::span<const float> vector = store_.vector(best.position);

@@ -42,10 +42,14 @@ class Retriever {
   // nothing; the draws depend on seed and query frame only. The query need not have been added.
   // Throws ContractError as add().
   std::vector<FoundView> search(const core::Descriptor& descriptor) const;
+  // The same with another window: who is lost may be where he was a moment ago.
+  std::vector<FoundView> search(const core::Descriptor& descriptor, int window_frames) const;
   // The search and then the exact similarity.
   std::vector<core::Candidate> query(const core::Descriptor& descriptor) const;
 
   int num_views() const { return store_.num_vectors(); }
+  // As it was added; position 0 is the oldest.
+  core::Descriptor view(int position) const;
 
   // Writes all views to a file, whole or not at all (store_file.hpp). There is at least one, or
   // ContractError. Throws InputError if the file cannot be written.

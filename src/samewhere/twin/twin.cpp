@@ -35,6 +35,7 @@ class TwinSource : public core::Source {
             .format = "twin building",
             .num_frames = walk_->num_frames(),
             .has_depth = walk_->spec().sensors == Sensors::kRgbd,
+            .num_cameras = walk_->spec().sensors == Sensors::kStereo ? 2 : 1,
             .is_calibrated = true,
             .frame_rate_hz = kFrameRate_hz};
   }

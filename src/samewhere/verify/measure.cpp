@@ -7,6 +7,7 @@
 #include <samewhere/core/random.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/features/match_projected.hpp>
+#include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/pnp.hpp>
 #include <samewhere/geometry/two_view.hpp>
@@ -101,8 +102,9 @@ class PoseMeasurement {
   }
 
   optimize::MotionProblem motion_problem(const std::vector<Match>& matches) const {
-    optimize::MotionProblem problem{
-        geometry::pinhole(query_.rig->cameras[0]), settings_.features.virtual_baseline_m, {}};
+    optimize::MotionProblem problem{geometry::pinhole(query_.rig->cameras[0]),
+                                    features::baseline_m(*query_.rig, settings_.features),
+                                    {}};
     for (const auto& match : matches) {
       const auto feature = static_cast<std::size_t>(match.second);
       problem.observations.push_back(

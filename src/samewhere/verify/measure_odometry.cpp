@@ -36,7 +36,7 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, core::Keyf
                                         core::KeyframeId match,
                                         const core::Rigid3& match_from_query,
                                         const Config& config) {
-  const core::Rigid3 known = inverse(map.at(match).world_from_body) * map.at(query).world_from_body;
+  const core::Rigid3 known = inverse(world_from_body(map, match)) * world_from_body(map, query);
   core::Vector6d correction;
   correction << match_from_query.translation - known.translation,
       core::log_so3(known.rotation.conjugate() * match_from_query.rotation);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <samewhere/core/result.hpp>
+#include <samewhere/core/rigid3.hpp>
+#include <samewhere/core/truth.hpp>
+#include <samewhere/dense/config.hpp>
+#include <samewhere/dense/voxel_cloud.hpp>
+
+namespace samewhere::dense {
+
+struct FloorPlane {
+  Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();  // unit
+  double offset_m = 0.0;  // height of a point x above the floor: up_in_world . x - offset_m
+  double area_m2 = 0.0;   // of it, as much as was seen
+};
+
+// The floor that the cameras were carried above, or in a sentence why there is none. The mean of
+// what is up in the pictures tells roughly which way is up; the largest plane of about that normal
+// among the points below the cameras tells it exactly (RANSAC); of the surfaces at one height under
+// that normal, the floor is the lowest that has a quarter of the largest one's points, so that a
+// long table is not taken for it. One plane: a walk over stairs or ramps has no floor in this
+// sense, its largest one is found. `voxel_m` is the edge of the cloud's voxels.
+Result<FloorPlane, std::string> find_floor(const std::vector<CloudPoint>& cloud, double voxel_m,
+                                           const core::Trajectory& cameras, const Config& config,
+                                           std::uint64_t seed);
+
+// The frame of a map that stands on the floor: z up, origin below the first camera, x where that
+// camera looked.
+core::Rigid3 map_from_world(const FloorPlane& floor, const core::Rigid3& world_from_first_camera);
+
+}  // namespace samewhere::dense

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <samewhere/dense/config.hpp>
+#include <samewhere/dense/view.hpp>
+
+namespace samewhere::dense {
+
+// What of space is free, what is occupied, what was never seen: the OctoMap of Hornung et al.
+// (Autonomous Robots 2013), by its library.
+class OctreeMap {
+ public:
+  explicit OctreeMap(const Config& config);
+  OctreeMap(const OctreeMap&) = delete;
+  OctreeMap& operator=(const OctreeMap&) = delete;
+  ~OctreeMap();
+
+  // Throws InputError if the camera is so far from the world's origin that the tree does not reach
+  // there.
+  void add(const std::vector<SeenPoint>& points_of_one_view, const Eigen::Vector3d& camera_m);
+
+  // A file of OctoMap's binary kind (.bt): each voxel free or occupied, whichever is likelier. The
+  // map is simplified by that; nothing can be added afterwards.
+  std::string bt_bytes();
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace samewhere::dense
