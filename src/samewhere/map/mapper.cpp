@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/median.hpp>
 #include <samewhere/map/mapper.hpp>
 
 namespace samewhere::map {
@@ -12,15 +15,28 @@ double median_depth_m(const features::View& view) {
   for (const float depth_m : view.features->depth_m) {
     if (depth_m > 0.0F) depths.push_back(depth_m);
   }
-  if (depths.empty()) return 0.0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return core::median(std::move(depths)).value_or(0.0F);
 }
 
-int num_landmarks(const scene::Keyframe& keyframe) {
-  return static_cast<int>(std::count_if(keyframe.slots.begin(), keyframe.slots.end(),
-                                        [](const core::LandmarkId& id) { return id.is_valid(); }));
+// Of the landmarks that the view shows, along its optical axis.
+double median_landmark_depth_m(const scene::MapVersion& map, const TrackedView& tracked) {
+  const core::Rigid3 camera_from_world =
+      inverse(world_from_body(map, tracked.pose.reference_keyframe) *
+              tracked.pose.reference_from_frame * tracked.view.rig->body_from_camera[0]);
+  std::vector<double> depths;
+  for (const auto& [feature, landmark] : tracked.landmarks)
+    depths.push_back((camera_from_world * position_in_world(map, map.at(landmark))).z());
+  return core::median(std::move(depths)).value_or(0.0);
+}
+
+// Landmarks that a second keyframe shows too. What only one has shown may never be found again: it
+// says nothing of how much of the reference is still in sight. Of the first keyframe all.
+int num_proven_landmarks(const scene::MapVersion& map, const scene::Keyframe& keyframe) {
+  const std::size_t min_observations = map.keyframes.size() > 2 ? 2 : 1;
+  return static_cast<int>(
+      std::count_if(keyframe.slots.begin(), keyframe.slots.end(), [&](const core::LandmarkId& id) {
+        return id.is_valid() && map.at(id).observations.size() >= min_observations;
+      }));
 }
 
 // A landmark at feature `slot` of a new keyframe; nothing where depth is unknown.
@@ -63,6 +79,11 @@ scene::Edit with_new_landmarks(const scene::MapVersion& map, scene::Keyframe key
   return edit;
 }
 
+// Whether the map was started from two views of one camera.
+bool is_without_depth(const scene::MapVersion& map) {
+  return num_with_depth(map.keyframes[0].view) == 0;
+}
+
 scene::Keyframe next_keyframe(const scene::MapVersion& map, const features::View& view,
                               const core::Rigid3& world_from_body) {
   scene::Keyframe keyframe;
@@ -85,17 +106,27 @@ bool can_start(const features::View& view, const Config& config) {
   return view.rig->is_calibrated() && num_with_depth(view) >= config.min_landmarks;
 }
 
+bool can_keep(const scene::MapVersion& map, const features::View& view, const Config& config) {
+  return is_without_depth(map) || num_with_depth(view) >= config.min_landmarks;
+}
+
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
                       const Config& config) {
-  if (num_with_depth(tracked.view) < config.min_landmarks) return false;
-  const scene::Keyframe& reference = map.at(tracked.pose.reference_keyframe);
+  if (!can_keep(map, tracked.view, config)) return false;
+  const bool has_depth = !is_without_depth(map);
+  const double depth_m =
+      has_depth ? median_depth_m(tracked.view) : median_landmark_depth_m(map, tracked);
+  const double max_move_ratio =
+      has_depth ? config.max_move_ratio : config.max_move_ratio_without_depth;
+  const double min_tracked_ratio =
+      has_depth ? config.min_tracked_ratio : config.min_tracked_ratio_without_depth;
   const core::Rigid3& moved = tracked.pose.reference_from_frame;
-  const bool is_far =
-      moved.translation.norm() > config.max_move_ratio * median_depth_m(tracked.view);
+  const bool is_far = moved.translation.norm() > max_move_ratio * depth_m;
   const bool is_turned = core::angle_rad(moved.rotation) > config.max_turn_rad;
-  const bool has_lost_sight = static_cast<double>(tracked.landmarks.size()) <
-                              config.min_tracked_ratio * num_landmarks(reference);
-  return is_far || is_turned || has_lost_sight;
+  const int num_in_reference = num_proven_landmarks(map, map.at(tracked.pose.reference_keyframe));
+  const auto num_tracked = static_cast<int>(tracked.landmarks.size());
+  const bool has_lost_sight = num_tracked < min_tracked_ratio * num_in_reference;
+  return is_far || is_turned || has_lost_sight || num_tracked < config.min_tracked;
 }
 
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
@@ -105,20 +136,49 @@ scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
                             std::vector<bool>(static_cast<std::size_t>(view.features->size())));
 }
 
+scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair) {
+  core::require(map.keyframes.empty(), "a map is started once");
+  const core::Rigid3& body_from_camera = pair.first.rig->body_from_camera[0];
+  const core::Rigid3 world_from_second =
+      body_from_camera * pair.first_from_second * inverse(pair.second.rig->body_from_camera[0]);
+  scene::Edit edit;
+  edit.keyframes = {next_keyframe(map, pair.first, core::Rigid3{}),
+                    next_keyframe(map, pair.second, world_from_second)};
+  scene::Keyframe& second = edit.keyframes.back();
+  second.id = core::KeyframeId(1);
+  second.odometry = {core::KeyframeId(0), world_from_second, core::Matrix6d::Identity()};
+  for (std::size_t i = 0; i < pair.matches.size(); ++i) {
+    scene::Landmark landmark;
+    landmark.id = core::LandmarkId(i);
+    landmark.anchor = core::KeyframeId(0);
+    landmark.position_in_anchor = body_from_camera * pair.points_in_first[i];
+    landmark.rgb = pair.first.features->rgb[static_cast<std::size_t>(pair.matches[i].first)];
+    edit.sightings.push_back({landmark.id, {core::KeyframeId(0), pair.matches[i].first}});
+    edit.sightings.push_back({landmark.id, {core::KeyframeId(1), pair.matches[i].second}});
+    edit.landmarks.push_back(std::move(landmark));
+  }
+  return edit;
+}
+
 scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked) {
   const core::FramePose& pose = tracked.pose;
-  scene::Keyframe keyframe =
-      next_keyframe(map, tracked.view,
-                    map.at(pose.reference_keyframe).world_from_body * pose.reference_from_frame);
-  keyframe.odometry = {pose.reference_keyframe, pose.reference_from_frame, pose.information};
+  scene::Keyframe keyframe = next_keyframe(
+      map, tracked.view, world_from_body(map, pose.reference_keyframe) * pose.reference_from_frame);
+  // a reference that was culled since then hangs on another: the edge goes there
+  const scene::Holder holder = holder_of(map, pose.reference_keyframe);
+  keyframe.odometry = {holder.keyframe, holder.holder_from_keyframe * pose.reference_from_frame,
+                       pose.information};
   std::vector<bool> is_taken(keyframe.slots.size(), false);
-  for (const auto& [feature, landmark] : tracked.landmarks)
-    is_taken[static_cast<std::size_t>(feature)] = true;
-
-  scene::Edit edit = with_new_landmarks(map, keyframe, is_taken);
+  std::vector<scene::Sighting> sightings;
+  std::set<core::LandmarkId> seen;
   for (const auto& [feature, landmark] : tracked.landmarks) {
-    edit.sightings.push_back({landmark, {keyframe.id, feature}});
+    const scene::Landmark& survivor = survivor_of(map, landmark);
+    if (survivor.is_culled || !seen.insert(survivor.id).second) continue;
+    is_taken[static_cast<std::size_t>(feature)] = true;
+    sightings.push_back({survivor.id, {keyframe.id, feature}});
   }
+  scene::Edit edit = with_new_landmarks(map, std::move(keyframe), is_taken);
+  edit.sightings = std::move(sightings);
   return edit;
 }
 

@@ -17,11 +17,24 @@ struct TrackedView {
   std::vector<std::pair<int, core::LandmarkId>> landmarks;  // feature, landmark
 };
 
+// Two views without depth, how they stand to each other, and the points that both see.
+struct ViewPair {
+  features::View first;
+  features::View second;
+  core::Rigid3 first_from_second;                // camera 0 of either
+  std::vector<features::Match> matches;          // first and second: features of either view
+  std::vector<Eigen::Vector3d> points_in_first;  // one per match, in the first camera
+};
+
 // How many features of the view could become landmarks: those with depth.
 int num_with_depth(const features::View& view);
 
 // Whether the view can start a map: enough features with depth.
 bool can_start(const features::View& view, const Config& config);
+
+// Whether the view could be a keyframe of this map: enough features with depth, or any view where
+// the map was started without.
+bool can_keep(const scene::MapVersion& map, const features::View& view, const Config& config);
 
 // Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
 // lost sight of it.
@@ -32,6 +45,9 @@ bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
 // stands at `world_from_body`.
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
                       const core::Rigid3& world_from_body);
+// The edit that makes two views the first keyframes, the first at the world's origin. ContractError
+// if the map has begun.
+scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair);
 scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked);
 
 }  // namespace samewhere::map

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/features/test_world.hpp>
 #include <samewhere/map/mapper.hpp>
 
@@ -80,6 +81,80 @@ TEST_F(TestMapper, ASecondKeyframeSeesOldLandmarksAgainAndAddsNewOnes) {
   EXPECT_EQ(second.slots[static_cast<std::size_t>(feature)], landmark);
   EXPECT_EQ(grown.at(landmark).observations.size(), 2U);
   EXPECT_EQ(grown.at(second.slots.back()).observations.back().keyframe, second.id);
+}
+
+// A map started from two views without depth, at true scale.
+class WithoutDepth : public testing::Test {
+ protected:
+  WithoutDepth() {
+    const features::View with_depth = features::test_view(world_, 0, {});
+    ViewPair pair{features::test_view(world_, 0, {}, 0.3, false),
+                  view_at(1, second_pose_),
+                  second_pose_,
+                  {},
+                  {}};
+    pair.matches = features::match_pair(pair.first.features->descriptors,
+                                        pair.second.features->descriptors, {});
+    for (const auto& match : pair.matches)
+      pair.points_in_first.push_back(*features::point_in_camera(with_depth, match.first));
+    num_points_ = pair.matches.size();
+    map_ = apply(scene::MapVersion{}, start_map(scene::MapVersion{}, pair));
+  }
+
+  features::View view_at(int frame, const core::Rigid3& world_from_body) const {
+    return features::test_view(world_, frame, world_from_body, 0.3, false);
+  }
+
+  // The view from there, which shows this share of the second keyframe's landmarks.
+  TrackedView tracked_at(const core::Rigid3& reference_from_frame, double shown_ratio) const {
+    TrackedView tracked{view_at(2, second_pose_ * reference_from_frame), {}, {}};
+    tracked.pose.reference_keyframe = core::KeyframeId(1);
+    tracked.pose.reference_from_frame = reference_from_frame;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shown_ratio * num_points_); ++i)
+      tracked.landmarks.emplace_back(static_cast<int>(i), core::LandmarkId(i));
+    return tracked;
+  }
+
+  features::TestWorld world_ = features::test_world(3);
+  core::Rigid3 second_pose_{core::exp_so3({0.0, 0.05, 0.0}), {0.3, 0.0, 0.0}};
+  std::size_t num_points_ = 0;
+  scene::MapVersion map_;
+  Config config_;
+};
+
+TEST_F(WithoutDepth, TwoViewsBecomeTwoKeyframesThatSeeTheSameLandmarks) {
+  ASSERT_EQ(map_.keyframes.size(), 2U);
+  ASSERT_EQ(map_.landmarks.size(), num_points_);
+  EXPECT_GT(num_points_, 100U);
+  EXPECT_FALSE(map_.keyframes[0].odometry);
+  EXPECT_EQ(map_.keyframes[1].odometry->parent, core::KeyframeId(0));
+  EXPECT_LT(core::log_r3so3(inverse(second_pose_) * map_.keyframes[1].world_from_body).norm(),
+            1e-9);
+  for (std::size_t i = 0; i < map_.landmarks.size(); ++i) {
+    const scene::Landmark& landmark = map_.landmarks[i];
+    ASSERT_EQ(landmark.observations.size(), 2U);
+    for (const auto& seen : landmark.observations) {
+      EXPECT_EQ(map_.at(seen.keyframe).slots[static_cast<std::size_t>(seen.slot)], landmark.id);
+    }
+    EXPECT_NEAR(landmark.range_m,
+                (position_in_world(map_, landmark) - second_pose_.translation).norm(), 1e-9);
+  }
+}
+
+TEST_F(WithoutDepth, AViewIsKeptWhenItMovedOrLostSightOfSomeLandmarks) {
+  EXPECT_FALSE(is_worth_keeping(map_, tracked_at({}, 1.0), config_));
+  EXPECT_FALSE(is_worth_keeping(map_, tracked_at({}, 0.85), config_));
+  EXPECT_TRUE(is_worth_keeping(map_, tracked_at({}, 0.7), config_));
+  const auto moved = [](double x) {
+    return core::Rigid3{Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
+  };
+  EXPECT_FALSE(is_worth_keeping(map_, tracked_at(moved(0.1), 1.0), config_));
+  EXPECT_TRUE(is_worth_keeping(map_, tracked_at(moved(0.8), 1.0), config_));
+}
+
+TEST_F(WithoutDepth, AMapIsStartedOnce) {
+  EXPECT_THROW(start_map(map_, ViewPair{view_at(0, {}), view_at(1, {}), {}, {}, {}}),
+               core::ContractError);
 }
 
 }  // namespace

@@ -26,6 +26,51 @@ inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
         {.help = "all errors times this while tracking is weak", .min = 1.0, .max = 100.0});
 }
 
+// How a camera without depth starts, from two views.
+struct StartConfig {
+  int min_matches = 100;
+  int min_points = 60;
+  double max_error_px = 2.0;
+  int ransac_iterations = 200;
+  double min_homography_ratio = 0.45;
+  double min_parallax_rad = 0.02;
+  double min_point_parallax_rad = 0.01;
+  double max_rival_ratio = 0.7;
+  int max_waiting_frames = 300;
+};
+
+inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
+  visit(
+      "min_matches", config.min_matches,
+      {.help = "fewer matches of the two views are no start, and the later view becomes the first",
+       .min = 8,
+       .max = 10000});
+  visit("min_points", config.min_points,
+        {.help = "fewer points in front of both views are no start", .min = 8, .max = 10000});
+  visit("max_error_px", config.max_error_px,
+        {.help = "error of a match that agrees with a motion", .min = 0.1, .max = 50.0});
+  visit("ransac_iterations", config.ransac_iterations,
+        {.help = "RANSAC samples of either model at most", .min = 1, .max = 100000});
+  visit("min_homography_ratio", config.min_homography_ratio,
+        {.help = "share of the homography in the scores of both models from which it is chosen",
+         .min = 0.0,
+         .max = 1.0});
+  visit("min_parallax_rad", config.min_parallax_rad,
+        {.help = "median parallax of a start, radians; less is a rotation",
+         .min = 0.001,
+         .max = 1.0});
+  visit("min_point_parallax_rad", config.min_point_parallax_rad,
+        {.help = "matches with less parallax become no points, radians", .min = 0.0, .max = 1.0});
+  visit("max_waiting_frames", config.max_waiting_frames,
+        {.help = "frames after which a first view without a start gives up its place",
+         .min = 1,
+         .max = 100000});
+  visit("max_rival_ratio", config.max_rival_ratio,
+        {.help = "a second motion that explains this share of the best one's matches is ambiguity",
+         .min = 0.1,
+         .max = 1.0});
+}
+
 struct Config {
   double near_radius_px = 12.0;
   double far_radius_px = 48.0;
@@ -34,6 +79,8 @@ struct Config {
   int ransac_iterations = 300;
   int min_inliers = 15;
   int weak_inliers = 40;
+  int sure_inliers = 100;
+  StartConfig start;
   DriftConfig drift;
 };
 
@@ -41,7 +88,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("near_radius_px", config.near_radius_px,
         {.help = "search radius around a landmark's predicted pixel", .min = 1.0, .max = 500.0});
   visit("far_radius_px", config.far_radius_px,
-        {.help = "the same when the prediction failed", .min = 1.0, .max = 1000.0});
+        {.help = "the same when that finds no sure pose", .min = 1.0, .max = 1000.0});
   visit("refine_radius_px", config.refine_radius_px,
         {.help = "the same once the pose is known, to collect what was missed",
          .min = 0.5,
@@ -54,6 +101,11 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "fewer inliers are no pose", .min = 6, .max = 1000});
   visit("weak_inliers", config.weak_inliers,
         {.help = "fewer inliers are a weak pose", .min = 6, .max = 1000});
+  visit("sure_inliers", config.sure_inliers,
+        {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
+         .min = 6,
+         .max = 10000});
+  visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
   visit("drift", config.drift,
         {.help = "Error model of the odometry, from which its information is made"});
 }

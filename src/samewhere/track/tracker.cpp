@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/pnp.hpp>
 #include <samewhere/track/drift_model.hpp>
@@ -63,8 +64,9 @@ std::vector<Match> Tracker::search(const View& view, const LocalMap& map,
 
 optimize::MotionProblem Tracker::motion_problem(const View& view, const LocalMap& map,
                                                 const std::vector<Match>& matches) const {
-  optimize::MotionProblem problem{
-      geometry::pinhole(view.rig->cameras[0]), settings_.features.virtual_baseline_m, {}};
+  optimize::MotionProblem problem{geometry::pinhole(view.rig->cameras[0]),
+                                  features::baseline_m(*view.rig, settings_.features),
+                                  {}};
   for (const auto& match : matches) {
     const auto feature = static_cast<std::size_t>(match.second);
     optimize::MotionObservation seen;
@@ -122,20 +124,21 @@ std::optional<Track> Tracker::solve(const View& view, const LocalMap& map,
 
 std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
                                     const core::Rigid3& guessed_reference_from_body) const {
+  const Config& config = settings_.track;
   std::optional<Track> best;
-  const auto is_enough = [&] {
-    return best && best->pose.num_inliers >= settings_.track.weak_inliers;
-  };
+  const auto has = [&](int num_inliers) { return best && best->pose.num_inliers >= num_inliers; };
   const auto offer = [&](std::optional<Track> track) {
-    if (track && (!best || track->pose.num_inliers > best->pose.num_inliers))
-      best = std::move(track);
+    if (track && !has(track->pose.num_inliers)) best = std::move(track);
   };
-  for (const double radius_px : {settings_.track.near_radius_px, settings_.track.far_radius_px}) {
-    if (!is_enough()) {
-      offer(solve(view, map, search(view, map, guessed_reference_from_body, radius_px)));
-    }
-  }
-  if (!is_enough()) offer(track_anywhere(view, map));
+  const auto search_around = [&](double radius_px) {
+    offer(solve(view, map, search(view, map, guessed_reference_from_body, radius_px)));
+  };
+  search_around(config.near_radius_px);
+  // On a floor full of small spots the near ones agree with each other by chance, even if the
+  // camera turned by more than the radius: a pose that few support must be the best of a wide
+  // search too.
+  if (!has(std::max(config.sure_inliers, config.weak_inliers))) search_around(config.far_radius_px);
+  if (!has(config.weak_inliers)) offer(track_anywhere(view, map));
   return best;
 }
 

@@ -55,6 +55,35 @@ TEST_F(TestTracker, FindsThePoseWithoutOrWithAWrongGuess) {
   }
 }
 
+// Landmarks that look like features of the view and stand where a wrong pose would see them.
+scene::LocalMap with_decoys(scene::LocalMap map, const features::View& view,
+                            const core::Rigid3& wrong, int num_decoys) {
+  for (int i = 0; i < num_decoys; ++i) {
+    const Eigen::Vector3d point = wrong * *features::point_in_camera(view, i);
+    map.landmarks.emplace_back(static_cast<std::uint64_t>(map.size()));
+    map.points_in_reference.push_back(point);
+    map.range_m.push_back(point.norm());
+    map.octave.push_back(0);
+    map.descriptors.push_back(view.features->descriptors.row(i));
+  }
+  return map;
+}
+
+TEST_F(TestTracker, AFewThatAgreeNearAWrongGuessDoNotWin) {
+  const features::View view = features::test_view(world_, 1, moved_);
+  const core::Rigid3 wrong = moved_ * core::Rigid3{core::exp_so3({0.0, 0.06, 0.0}), {}};
+  const scene::LocalMap map = with_decoys(map_, view, wrong, 60);
+  TrackerSettings credulous;
+  credulous.track.sure_inliers = 6;
+  const auto fooled = Tracker(credulous).track(view, map, wrong);
+  ASSERT_TRUE(fooled);
+  ASSERT_LT(error_of(*fooled, wrong), 0.01) << "the decoys must be good enough to fool somebody";
+  ASSERT_GT(fooled->pose.num_inliers, credulous.track.weak_inliers);
+  const auto track = tracker_.track(view, map, wrong);
+  ASSERT_TRUE(track);
+  EXPECT_LT(error_of(*track, moved_), 0.005);
+}
+
 TEST_F(TestTracker, WorksOnPixelsAloneWhereTheFrameHasNoDepth) {
   const auto track = tracker_.track(features::test_view(world_, 1, moved_, 0.3, false), map_, {});
   ASSERT_TRUE(track);

@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/map/cull.hpp>
+#include <samewhere/map/fuse.hpp>
+#include <samewhere/map/local_bundle.hpp>
+#include <samewhere/map/test_map.hpp>
+#include <samewhere/map/triangulate.hpp>
+
+namespace samewhere::map {
+namespace {
+
+constexpr auto kNone = [](core::LandmarkId) { return false; };
+
+const scene::Keyframe& newest(const scene::MapVersion& map) { return map.keyframes.back(); }
+
+double worst_error(const scene::MapVersion& map) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    const core::Rigid3 error =
+        inverse(test_walk(static_cast<int>(i))) * map.keyframes[i].world_from_body;
+    worst = std::max(worst, core::log_r3so3(error).norm());
+  }
+  return worst;
+}
+
+// Distance of each live landmark to the point of the world that has its descriptor.
+std::vector<double> errors_m(const scene::MapVersion& map, const features::TestWorld& world,
+                             std::size_t first) {
+  std::vector<double> errors;
+  for (std::size_t i = first; i < map.landmarks.size(); ++i) {
+    const scene::Landmark& landmark = map.landmarks[i];
+    const auto found =
+        std::find(world.descriptors.begin(), world.descriptors.end(), landmark.descriptor);
+    const auto point = static_cast<std::size_t>(found - world.descriptors.begin());
+    if (is_live(landmark))
+      errors.push_back((position_in_world(map, landmark) - world.points.at(point)).norm());
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+// Two keyframes without depth that share the first 60 points that both see, and no others.
+scene::MapVersion without_depth(const features::TestWorld& world) {
+  scene::MapVersion map = test_map(world, 1);
+  scene::Edit edit;
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    scene::Keyframe keyframe;
+    keyframe.id = core::KeyframeId(i);
+    keyframe.world_from_body = test_walk(4 * static_cast<int>(i));
+    keyframe.view =
+        features::test_view(world, 10 + static_cast<int>(i), keyframe.world_from_body, 0.3, false);
+    keyframe.slots.resize(static_cast<std::size_t>(keyframe.view.features->size()));
+    edit.keyframes.push_back(keyframe);
+  }
+  auto matches = features::match_pair(edit.keyframes[0].view.features->descriptors,
+                                      edit.keyframes[1].view.features->descriptors, {});
+  matches.resize(60);
+  for (const auto& match : matches) {
+    scene::Landmark landmark;
+    landmark.id = core::LandmarkId(edit.landmarks.size());
+    landmark.anchor = core::KeyframeId(0);
+    landmark.position_in_anchor = {0.0, 0.0, 3.0};
+    edit.landmarks.push_back(landmark);
+    edit.sightings.push_back({landmark.id, {core::KeyframeId(0), match.first}});
+    edit.sightings.push_back({landmark.id, {core::KeyframeId(1), match.second}});
+  }
+  return apply(scene::MapVersion{}, edit);
+}
+
+TEST(Triangulate, PointsWithoutDepthComeOutOfTwoViews) {
+  const features::TestWorld world = features::test_world(3);
+  const scene::MapVersion map = without_depth(world);
+  const scene::MapVersion grown =
+      apply(map, triangulate_landmarks(map, core::KeyframeId(1), {}, {}));
+  const auto errors = errors_m(grown, world, 60);
+  ASSERT_GT(errors.size(), 200U);
+  EXPECT_LT(errors[errors.size() / 2], 0.03);
+  EXPECT_LT(errors[errors.size() * 95 / 100], 0.3);
+  for (std::size_t i = 60; i < grown.landmarks.size(); ++i) {
+    EXPECT_EQ(grown.landmarks[i].observations.size(), 2U);
+    EXPECT_GT(grown.landmarks[i].range_m, 1.0);
+  }
+}
+
+TEST(Triangulate, RaysThatAreNearlyParallelMakeNoPoint) {
+  const scene::MapVersion map = without_depth(features::test_world(3));
+  EXPECT_TRUE(triangulate_landmarks(map, core::KeyframeId(1), {.min_parallax_rad = 0.9}, {})
+                  .landmarks.empty());
+}
+
+TEST(Fuse, WhatTrackingOverlookedBecomesOneLandmarkAgain) {
+  const features::TestWorld world = features::test_world(3);
+  scene::MapVersion map = test_map(world, 2);
+  const features::View view = features::test_view(world, 2, test_walk(2));
+  const auto is_odd = [](core::LandmarkId id) { return id.index() % 2 == 1; };
+  map = apply(map, add_keyframe(map, test_tracked(map, view, test_walk(2), is_odd)));
+  const std::size_t num_before = num_live(map.landmarks);
+  for (const auto& edit : fuse_around(map, newest(map).id, {}, {})) map = apply(map, edit);
+  std::set<scene::OrbDescriptor> different;
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i)
+    different.insert(map.landmarks[i].descriptor);
+  EXPECT_GT(num_before, different.size() + 100) << "doubled";
+  EXPECT_LT(static_cast<double>(num_live(map.landmarks)),
+            1.03 * static_cast<double>(different.size()));
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    std::set<core::KeyframeId> seen_by;
+    for (const auto& o : map.landmarks[i].observations) {
+      EXPECT_TRUE(seen_by.insert(o.keyframe).second) << "landmark " << i << " twice in a picture";
+      if (is_live(map.landmarks[i])) {
+        EXPECT_EQ(map.at(o.keyframe).slots[static_cast<std::size_t>(o.slot)], map.landmarks[i].id);
+      }
+    }
+  }
+}
+
+TEST(LocalBundle, MovesDisturbedKeyframesBackAndLeavesOdometryAlone) {
+  const features::TestWorld world = features::test_world(4, 2000);
+  const scene::MapVersion map = test_map(world, 6, 0.01);
+  const scene::Edit edit = bundle_around(map, newest(map).id, {});
+  const scene::MapVersion bundled = apply(map, edit);
+  EXPECT_GT(worst_error(map), 0.02);
+  EXPECT_LT(worst_error(bundled), 0.006);
+  EXPECT_EQ(bundled.keyframes[0].world_from_body.matrix(), core::Rigid3{}.matrix()) << "the gauge";
+  EXPECT_EQ(edit.refinements.size(), 5U);
+  for (std::size_t i = 1; i < 6; ++i) {
+    EXPECT_EQ(bundled.keyframes[i].odometry->parent_from_keyframe.matrix(),
+              map.keyframes[i].odometry->parent_from_keyframe.matrix());
+    const core::Rigid3 step =
+        inverse(bundled.keyframes[i - 1].world_from_body) * bundled.keyframes[i].world_from_body;
+    EXPECT_LT(core::log_r3so3(inverse(step) * parent_from_keyframe(bundled.keyframes[i])).norm(),
+              1e-9);
+  }
+  const auto before = errors_m(map, world, 0);
+  const auto after = errors_m(bundled, world, 0);
+  EXPECT_LT(after[after.size() / 2], before[before.size() / 2]);
+}
+
+TEST(LocalBundle, TheWindowKeepsItsLimits) {
+  const scene::MapVersion map = test_map(features::test_world(4, 2000), 9);
+  const Config config{
+      .bundle_keyframes = 3, .bundle_fixed_keyframes = 2, .bundle_observations = 500};
+  const BundleWindow window = window_around(map, newest(map).id, config);
+  EXPECT_EQ(window.free,
+            (std::vector{core::KeyframeId(6), core::KeyframeId(7), core::KeyframeId(8)}));
+  EXPECT_EQ(window.fixed.size(), 2U);
+  std::size_t num_observations = 0;
+  for (const auto& id : window.landmarks) num_observations += map.at(id).observations.size();
+  EXPECT_LE(num_observations, 500U);
+  EXPECT_GT(num_observations, 400U);
+}
+
+TEST(LocalBundle, AKeyframeAloneStaysWhereItIs) {
+  const scene::MapVersion map = test_map(features::test_world(4, 500), 1);
+  EXPECT_TRUE(bundle_around(map, core::KeyframeId(0), {}).pose_changes.empty());
+}
+
+TEST(Cull, ALandmarkThatNobodyFindsAgainGoesAndOneOutOfSightStays) {
+  const features::TestWorld world = features::test_world(5, 2000);
+  scene::MapVersion map = test_map(world, 2);
+  // landmarks of keyframe 1 whose id is a multiple of five are never seen again
+  const auto is_lost = [&](core::LandmarkId id) {
+    return map.at(id).anchor == core::KeyframeId(1) && id.index() % 5 == 0;
+  };
+  for (int i = 2; i < 5; ++i) {
+    const features::View view = features::test_view(world, i, test_walk(i));
+    map = apply(map, add_keyframe(map, test_tracked(map, view, test_walk(i), is_lost)));
+  }
+  const scene::Edit edit = cull_around(map, newest(map).id, {}, {});
+  EXPECT_GT(edit.culled_landmarks.size(), 2U);
+  for (const auto& id : edit.culled_landmarks) EXPECT_TRUE(is_lost(id)) << "landmark " << id;
+
+  // the camera turns round: what it cannot see is not blamed
+  scene::MapVersion turned = test_map(world, 2);
+  for (int i = 2; i < 5; ++i) {
+    const core::Rigid3 back{core::exp_so3({0.0, 3.1, 0.0}), {0.0, 0.0, 0.0}};
+    turned =
+        apply(turned, add_keyframe(turned, test_tracked(turned, features::test_view(world, i, back),
+                                                        back, kNone)));
+  }
+  EXPECT_TRUE(cull_around(turned, newest(turned).id, {}, {}).culled_landmarks.empty());
+}
+
+TEST(Cull, OfManyKeyframesOfOneViewOneGoesButNeverTheFirstOrOneOfALoop) {
+  const features::TestWorld world = features::test_world(6, 2000);
+  scene::MapVersion map = test_map(world, 1);
+  for (int i = 1; i < 8; ++i) {
+    map = apply(map,
+                add_keyframe(map, test_tracked(map, features::test_view(world, i, {}), {}, kNone)));
+  }
+  const auto culled = cull_around(map, newest(map).id, {}, {}).culled_keyframes;
+  ASSERT_EQ(culled.size(), 1U);
+  EXPECT_GT(culled[0], core::KeyframeId(0));
+  EXPECT_LT(culled[0], core::KeyframeId(4)) << "the latest are not judged yet";
+  for (std::uint64_t i = 1; i < 4; ++i)
+    map.loops.push_back({newest(map).id, core::KeyframeId(i), {}});
+  EXPECT_TRUE(cull_around(map, newest(map).id, {}, {}).culled_keyframes.empty());
+}
+
+TEST(Cull, AKeyframeThatShowsWhatOthersDoNotStays) {
+  const features::TestWorld world = features::test_world(6, 2000);
+  scene::MapVersion map = test_map(world, 1);
+  for (int i = 1; i < 8; ++i) {
+    const core::Rigid3 turned{core::exp_so3({0.0, 0.5 * i, 0.0}), {0.0, 0.0, 0.0}};
+    const features::View view = features::test_view(world, i, turned);
+    map = apply(map, add_keyframe(map, test_tracked(map, view, turned, kNone)));
+  }
+  const Config judging_all{.cull_after_keyframes = 1};
+  EXPECT_TRUE(cull_around(map, newest(map).id, judging_all, {}).culled_keyframes.empty());
+}
+
+}  // namespace
+}  // namespace samewhere::map

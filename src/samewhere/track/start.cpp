@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/median.hpp>
+#include <samewhere/core/random.hpp>
+#include <samewhere/geometry/camera.hpp>
+#include <samewhere/geometry/essential.hpp>
+#include <samewhere/geometry/homography.hpp>
+#include <samewhere/geometry/triangulation.hpp>
+#include <samewhere/track/start.hpp>
+
+namespace samewhere::track {
+namespace {
+
+using core::Rigid3;
+using features::Match;
+using features::View;
+using geometry::RayPairs;
+
+geometry::RayPairs ray_pairs(const View& first, const View& second,
+                             const std::vector<Match>& matches) {
+  const auto bearing = [](const View& view, int feature) {
+    return geometry::bearing_of_undistorted(
+        view.rig->cameras[0],
+        view.features->undistorted_px[static_cast<std::size_t>(feature)].cast<double>());
+  };
+  RayPairs pairs{{}, {}, geometry::focal_px(first.rig->cameras[0])};
+  for (const auto& match : matches) {
+    pairs.first.push_back(bearing(first, match.first));
+    pairs.second.push_back(bearing(second, match.second));
+  }
+  return pairs;
+}
+
+// The score of a model in ORB-SLAM, eq. (2): what each error leaves of the largest one.
+template <class ErrorOf>
+double model_score(const RayPairs& pairs, double max_squared_px, const ErrorOf& error_of) {
+  constexpr double kLargest = 5.99;  // 95 % of chi-square with 2 degrees of freedom, sigma 1 px
+  double score = 0.0;
+  for (int i = 0; i < pairs.size(); ++i) {
+    const geometry::TransferError error = error_of(i);
+    if (error.in_first < max_squared_px) score += kLargest - error.in_first;
+    if (error.in_second < max_squared_px) score += kLargest - error.in_second;
+  }
+  return score;
+}
+
+double homography_score(const geometry::Homography& homography, const RayPairs& pairs) {
+  return model_score(pairs, 5.99, [&](int i) { return transfer_error(homography, pairs, i); });
+}
+
+double essential_score(const Eigen::Matrix3d& essential, const RayPairs& pairs) {
+  return model_score(pairs, 3.84, [&](int i) { return epipolar_error(essential, pairs, i); });
+}
+
+// Motions of which one is the true one, and the pairs that agree with the model behind them.
+struct Model {
+  std::vector<Rigid3> motions;  // second_from_first, translations of length 1
+  std::vector<int> inliers;
+  bool is_planar = false;
+};
+
+Model planar_model(const geometry::RansacResult<geometry::Homography>& homography) {
+  Model model{{}, homography.inliers, true};
+  for (const auto& motion : motions_of(homography.model)) {
+    const Rigid3& moved = motion.second_from_first;
+    model.motions.push_back({moved.rotation, moved.translation.normalized()});
+  }
+  return model;
+}
+
+Model general_model(const geometry::RansacResult<Eigen::Matrix3d>& essential) {
+  const auto motions = geometry::motions_of_essential(essential.model);
+  return {{motions.begin(), motions.end()}, essential.inliers, false};
+}
+
+// The model that explains the pairs best. Without motions: none, or that of a rotation.
+Model choose_model(const RayPairs& pairs, const StartConfig& config, core::Random& random) {
+  const geometry::RansacOptions options{.max_error_px = config.max_error_px,
+                                        .max_iterations = config.ransac_iterations,
+                                        .min_inliers = config.min_points};
+  const auto homography = estimate_homography(pairs, options, random);
+  const auto essential = estimate_essential(pairs, options, random);
+  if (!homography && !essential) return {};
+  if (!homography) return general_model(*essential);
+  if (!essential) return planar_model(*homography);
+  const double score_h = homography_score(homography->model, pairs);
+  const double score_e = essential_score(essential->model, pairs);
+  return score_h > config.min_homography_ratio * (score_h + score_e) ? planar_model(*homography)
+                                                                     : general_model(*essential);
+}
+
+// The pairs that a motion explains: their rays meet in front of both cameras, close enough to where
+// they were seen.
+struct Explained {
+  std::vector<int> pairs;  // indices, ascending
+  std::vector<Eigen::Vector3d> points_in_first;
+  std::vector<double> parallax_rad;
+};
+
+double squared_px(const Eigen::Vector3d& point, const Eigen::Vector3d& bearing, double focal_px) {
+  return focal_px * focal_px * (point.hnormalized() - bearing.hnormalized()).squaredNorm();
+}
+
+Explained explain(const RayPairs& pairs, const std::vector<int>& candidates,
+                  const Rigid3& second_from_first, const StartConfig& config) {
+  const double max_squared_px = config.max_error_px * config.max_error_px;
+  Explained explained;
+  for (const int i : candidates) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto point = geometry::triangulate(second_from_first, pairs.first[k], pairs.second[k]);
+    if (!point || point->z() <= 0.0) continue;
+    const Eigen::Vector3d in_second = second_from_first * *point;
+    if (in_second.z() <= 0.0) continue;
+    if (squared_px(*point, pairs.first[k], pairs.focal_px) > max_squared_px) continue;
+    if (squared_px(in_second, pairs.second[k], pairs.focal_px) > max_squared_px) continue;
+    explained.pairs.push_back(i);
+    explained.points_in_first.push_back(*point);
+    explained.parallax_rad.push_back(
+        geometry::parallax_rad(second_from_first.rotation, pairs.first[k], pairs.second[k]));
+  }
+  return explained;
+}
+
+struct BestMotion {
+  Rigid3 second_from_first;
+  Explained explained;
+  std::size_t num_explained_by_second = 0;  // of the pairs, by the second best motion
+};
+
+BestMotion best_motion(const RayPairs& pairs, const Model& model, const StartConfig& config) {
+  BestMotion best;
+  for (const auto& motion : model.motions) {
+    Explained explained = explain(pairs, model.inliers, motion, config);
+    const std::size_t count = explained.pairs.size();
+    const std::size_t best_count = best.explained.pairs.size();
+    best.num_explained_by_second =
+        std::max(best.num_explained_by_second, std::min(count, best_count));
+    if (count > best_count) {
+      best.second_from_first = motion;
+      best.explained = std::move(explained);
+    }
+  }
+  return best;
+}
+
+// The best motion, refined on what it explains.
+void refine(BestMotion& best, const RayPairs& pairs, const Model& model,
+            const StartConfig& config) {
+  if (static_cast<int>(best.explained.pairs.size()) < config.min_points) return;
+  best.second_from_first =
+      refine_motion(subset(pairs, best.explained.pairs), best.second_from_first);
+  best.explained = explain(pairs, model.inliers, best.second_from_first, config);
+}
+
+// The points that have parallax enough, at a median depth of 1.
+Start make_start(const BestMotion& best, const std::vector<Match>& matches, bool is_planar,
+                 const StartConfig& config) {
+  Start start;
+  start.is_planar = is_planar;
+  const Explained& explained = best.explained;
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < explained.pairs.size(); ++i) {
+    if (explained.parallax_rad[i] < config.min_point_parallax_rad) continue;
+    start.matches.push_back(matches[static_cast<std::size_t>(explained.pairs[i])]);
+    start.points_in_first.push_back(explained.points_in_first[i]);
+    depths.push_back(explained.points_in_first[i].z());
+  }
+  start.median_parallax_rad = core::median(explained.parallax_rad).value_or(0.0);
+  start.first_from_second = inverse(best.second_from_first);
+  const auto depth = core::median(std::move(depths));
+  if (!depth) return start;
+  const double scale = 1.0 / *depth;
+  for (auto& point : start.points_in_first) point *= scale;
+  start.first_from_second.translation *= scale;
+  return start;
+}
+
+constexpr double degrees(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
+
+// Why a motion is no start; nothing: it is one.
+std::optional<NoStart> refusal_of(const Start& start, const BestMotion& best,
+                                  const StartConfig& config) {
+  const std::size_t num_explained = best.explained.pairs.size();
+  if (start.median_parallax_rad < config.min_parallax_rad) {
+    return NoStart{
+        StartRefusal::kLowParallax, 0,
+        fmt::format("median parallax {:.2f} degrees, expected {:.2f}",
+                    degrees(start.median_parallax_rad), degrees(config.min_parallax_rad))};
+  }
+  if (static_cast<double>(best.num_explained_by_second) >
+      config.max_rival_ratio * static_cast<double>(num_explained)) {
+    return NoStart{StartRefusal::kAmbiguous, 0,
+                   fmt::format("another motion explains {} of the matches, the best {}",
+                               best.num_explained_by_second, num_explained)};
+  }
+  if (static_cast<int>(start.matches.size()) < config.min_points) {
+    return NoStart{StartRefusal::kFewPoints, 0,
+                   fmt::format("{} points, expected {}", start.matches.size(), config.min_points)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view name_of(StartRefusal refusal) {
+  constexpr std::string_view kNames[] = {"few matches", "low parallax", "ambiguous", "few points"};
+  return kNames[static_cast<int>(refusal)];
+}
+
+Result<Start, NoStart> try_start(const View& first, const View& second,
+                                 const StartSettings& settings) {
+  core::require(first.rig->is_calibrated() && second.rig->is_calibrated(),
+                "only calibrated views start a map");
+  const StartConfig& config = settings.start;
+  const auto matches =
+      match_pair(first.features->descriptors, second.features->descriptors, settings.features);
+  const auto num_matches = static_cast<int>(matches.size());
+  if (num_matches < config.min_matches) {
+    return refuse(NoStart{StartRefusal::kFewMatches, num_matches,
+                          fmt::format("{} matches, expected {}", num_matches, config.min_matches)});
+  }
+  const RayPairs pairs = ray_pairs(first, second, matches);
+  core::Random random(core::seed_of(settings.seed, "start", second.frame.value()));
+  const Model model = choose_model(pairs, config, random);
+  if (model.inliers.empty()) {
+    return refuse(NoStart{StartRefusal::kFewMatches, num_matches,
+                          fmt::format("of {} matches fewer than {} agree with any motion",
+                                      num_matches, config.min_points)});
+  }
+  BestMotion best = best_motion(pairs, model, config);
+  refine(best, pairs, model, config);
+  Start start = make_start(best, matches, model.is_planar, config);
+  if (auto reason = refusal_of(start, best, config)) {
+    reason->num_matches = num_matches;
+    return refuse(*std::move(reason));
+  }
+  return start;
+}
+
+}  // namespace samewhere::track

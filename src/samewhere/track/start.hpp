@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <samewhere/core/result.hpp>
+#include <samewhere/core/rigid3.hpp>
+#include <samewhere/features/config.hpp>
+#include <samewhere/features/features.hpp>
+#include <samewhere/features/match_pair.hpp>
+#include <samewhere/track/config.hpp>
+
+namespace samewhere::track {
+
+// What two views of one camera say about its motion and about the points that both see. The scale
+// is free: the median depth of the points in the first camera is 1.
+struct Start {
+  core::Rigid3 first_from_second;                // camera 0 of either view
+  std::vector<features::Match> matches;          // first and second: the features that show a point
+  std::vector<Eigen::Vector3d> points_in_first;  // one per match, in the first camera
+  double median_parallax_rad = 0.0;              // of all matches that agree with the motion
+  bool is_planar = false;                        // found by a homography
+};
+
+// Why two views do not start a map, in the order of the checks.
+enum class StartRefusal { kFewMatches, kLowParallax, kAmbiguous, kFewPoints };
+
+std::string_view name_of(StartRefusal refusal);
+
+struct NoStart {
+  StartRefusal refusal = StartRefusal::kFewMatches;
+  int num_matches = 0;
+  std::string reason;  // one sentence with the figure and the threshold
+};
+
+struct StartSettings {
+  StartConfig start;
+  features::Config features;
+  std::uint64_t seed = 0;
+};
+
+// The motion between two views without depth. Homography and essential matrix are both estimated
+// and scored by their symmetric transfer errors; of S_H / (S_H + S_E) above `min_homography_ratio`
+// the scene is flat or hardly moved against, and the motion comes from the homography (Mur-Artal,
+// Montiel and Tardos, "ORB-SLAM", T-RO 2015, section IV). Refused: a motion without parallax (a
+// rotation says nothing of depth), a motion that a second one explains nearly as well, too few
+// matches or points. Both views are calibrated, else ContractError.
+Result<Start, NoStart> try_start(const features::View& first, const features::View& second,
+                                 const StartSettings& settings);
+
+}  // namespace samewhere::track
