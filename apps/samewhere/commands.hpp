@@ -10,8 +10,11 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_loops_command(CLI::App& app, int& exit_code);
 void add_twin_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
+void add_dense_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app);
+void add_map_command(CLI::App& app);
+void add_calibrate_command(CLI::App& app);
 void add_train_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
 

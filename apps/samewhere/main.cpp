@@ -16,9 +16,12 @@ int run(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_loops_command(app, exit_code);
   add_eval_command(app);
+  add_dense_command(app);
   add_bench_command(app, exit_code);
   add_twin_command(app);
+  add_map_command(app);
   add_config_command(app);
+  add_calibrate_command(app);
   add_train_command(app);
   add_doctor_command(app);
   try {

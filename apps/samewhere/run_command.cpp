@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -25,6 +26,10 @@ enum class Work { kSlam, kRecognition };
 struct RunCommand {
   std::string source;
   std::string out;
+  std::string map;        // run only: start in this map
+  bool localize = false;  // and leave it as it is
+  std::string camera;
+  bool is_realtime = false;
   ConfigOptions config;
 };
 
@@ -69,59 +74,99 @@ void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::p
   if (const auto whole = times.find(report::kWholeFrameStage); whole != times.end()) {
     const core::TimingSummary summary = core::summarize(whole->second);
     fmt::print(
-        "  {:.1f} frames per second without reading ({:.1f} ms median, {:.1f} ms p95), {:.0f} MiB "
-        "at most\n\n",
+        "  {:.1f} frames per second without reading ({:.1f} ms median, {:.1f} ms p95; {:.1f} ms of "
+        "processor time), {:.0f} MiB at most\n",
         1000.0 * summary.count / summary.total_ms, summary.median_ms, summary.p95_ms,
+        record.timings.processor_ms().at(report::kWholeFrameStage) / summary.count,
         core::peak_memory_mib());
   }
+  if (record.first_pose_s)
+    fmt::print("  first pose {:.2f} s after the start\n", *record.first_pose_s);
+  fmt::print("\n");
   fmt::print("{}\n", report::funnel_text(report::funnel(record.ledger)));
   fmt::print("{}\n", (folder / "report.html").string());
 }
 
-// What an earlier run left in the folder would be taken for this one's.
-void remove_old_results(const std::filesystem::path& folder) {
+pipeline::MapPlan map_plan(const RunCommand& command, const std::filesystem::path& folder) {
+  if (command.map.empty()) return {.save = folder / "map.sw"};
+  return {.known = command.map, .is_known_fixed = command.localize};
+}
+
+// What an earlier run left in the folder would be taken for this one's. The map that the run starts
+// in may be one of these: it stays.
+void remove_old_results(const std::filesystem::path& folder, const std::filesystem::path& map) {
+  std::error_code no_map;
+  const bool is_map_here = std::filesystem::equivalent(folder / "map.sw", map, no_map);
   for (const char* name :
        {"trajectory.tum", "odometry.tum", "frames.csv", "map.ply", "matches.txt", "accepted.txt",
-        "loops.json", "config.yaml", "timing.json", "report.html"}) {
+        "loops.json", "config.yaml", "timing.json", "report.html", "map.sw", "map.sw-wal",
+        "map.sw-shm", "cloud.ply", "map.pgm", "map.yaml", "map.bt"}) {
+    if (is_map_here && std::string_view(name).starts_with("map.sw")) continue;
     std::error_code ignored;  // a file that stays will be written over, or fail loudly then
     std::filesystem::remove(folder / name, ignored);
   }
+}
+
+// Who runs a camera knows that frames may be lost.
+void require_realtime_as_told(const RunCommand& command, bool is_live) {
+  if (is_live == command.is_realtime) return;
+  throw core::InputError(
+      command.source +
+      (is_live ? ": is a camera, whose frames come whether they are taken or not; expected "
+                 "--realtime, which drops what comes too fast and counts it"
+               : ": is a recording; --realtime is for a camera such as /dev/video0"));
 }
 
 int execute(const RunCommand& command, Work work) {
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
+  if (!command.camera.empty()) config.input.camera = command.camera;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);
   const std::filesystem::path folder =
       command.out.empty() ? unused_folder(command.source) : std::filesystem::path(command.out);
   auto source = pipeline::open_source(config);
+  require_realtime_as_told(command, source->info().is_live);
   if (work == Work::kSlam) pipeline::require_slam_input(source->info(), config);
   // only now, so that a bad source leaves no folder behind; and not later, so that a folder that
   // cannot be written is found out before the work is done
   core::make_writable_folder(folder);
-  remove_old_results(folder);
-  const pipeline::RunOutcome outcome = work == Work::kSlam
-                                           ? pipeline::run_slam(std::move(source), config)
-                                           : pipeline::run_recognition(std::move(source), config);
+  remove_old_results(folder, command.map);
+  const pipeline::RunOutcome outcome =
+      work == Work::kSlam ? pipeline::run_slam(std::move(source), config, map_plan(command, folder))
+                          : pipeline::run_recognition(std::move(source), config);
   write(outcome, work, folder);
   print_outcome(outcome, folder);
-  if (outcome.record.input_error) throw core::InputError(*outcome.record.input_error);
+  for (const auto& error : {outcome.record.input_error, outcome.map_error})
+    if (error) throw core::InputError(*error);
   return outcome.record.is_interrupted ? core::kInterruptedExit : core::kDone;
+}
+
+void add_map_options(CLI::App& sub, RunCommand& command) {
+  CLI::Option* map = sub.add_option(
+      "--map", command.map,
+      "start in this map, lost until a place is recognised; it grows by what is seen");
+  sub.add_flag("--localize", command.localize, "leave the map of --map as it is")->needs(map);
 }
 
 CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, Work work,
                              int& exit_code) {
   auto command = std::make_shared<RunCommand>();
   CLI::App* sub = app.add_subcommand(name, what);
-  sub->add_option("SOURCE", command->source,
-                  "a folder (TUM RGB-D, EuRoC, 7-Scenes, HoloLens, images), a list of images, or "
-                  "twin:PRESET?seed=3")
+  sub->add_option(
+         "SOURCE", command->source,
+         "a folder (TUM RGB-D, EuRoC, KITTI, 7-Scenes, HoloLens, images), a list of images, a "
+         "video, a camera (/dev/video0), or twin:PRESET?seed=3")
       ->required();
   sub->add_option("--out", command->out,
                   "folder for the results; without it runs/NAME, never overwriting");
+  sub->add_option("--camera", command->camera,
+                  "camera file, as `samewhere calibrate` writes it; without it the source's own");
+  sub->add_flag("--realtime", command->is_realtime,
+                "for a camera: always the newest frame; says how many were dropped");
   add_config_options(*sub, command->config);
+  if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;
 }
@@ -136,7 +181,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "  samewhere run twin:twin-corridors --out runs/demo  the built-in world, no download\n"
           "  samewhere run ~/data/fr1_room                      a TUM RGB-D folder with "
           "camera.txt\n"
-          "  samewhere run kitchen --set verify.min_inliers=60  one setting changed");
+          "  samewhere run walk.mp4 --camera camera.txt         a video\n"
+          "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
+          "  samewhere run today --map runs/kitchen/map.sw --localize  where was this, in that "
+          "map?");
 }
 
 void add_loops_command(CLI::App& app, int& exit_code) {

@@ -93,6 +93,17 @@ std::optional<AteResult> ate(const core::Trajectory& truth, const core::Trajecto
   return result;
 }
 
+double path_length_m(const core::Trajectory& trajectory, double first_s, double last_s) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    if (trajectory[i - 1].stamp_s < first_s || trajectory[i].stamp_s > last_s) continue;
+    length_m += (trajectory[i].world_from_camera.translation -
+                 trajectory[i - 1].world_from_camera.translation)
+                    .norm();
+  }
+  return length_m;
+}
+
 std::optional<RpeResult> rpe(const core::Trajectory& truth, const core::Trajectory& estimate,
                              double delta_s, double scale) {
   core::require(delta_s > 0.0, "relative pose errors are over a positive time");

@@ -33,6 +33,9 @@ struct AteResult {
 std::optional<AteResult> ate(const core::Trajectory& truth, const core::Trajectory& estimate,
                              Alignment alignment);
 
+// How far the camera went between two stamps, metres: from one pose to the next.
+double path_length_m(const core::Trajectory& trajectory, double first_s, double last_s);
+
 // Relative pose error: drift over a fixed time, free of any alignment.
 struct RpeResult {
   double translation_median_m = 0.0;

@@ -182,5 +182,15 @@ TEST(Rpe, HasNoAnswerWithoutAPairThatFarApart) {
   EXPECT_THROW(rpe(sparse, sparse, 0.0), core::ContractError);
 }
 
+TEST(PathLength, CountsEveryStepBetweenTheStampsAndNoOther) {
+  const core::Trajectory there_and_back = {
+      standing_at(0.0, 0.0, 0.0, 0.0), standing_at(1.0, 3.0, 4.0, 0.0),
+      standing_at(2.0, 0.0, 0.0, 0.0), standing_at(3.0, 0.0, 0.0, 7.0)};
+  EXPECT_DOUBLE_EQ(path_length_m(there_and_back, 0.0, 3.0), 17.0);
+  EXPECT_DOUBLE_EQ(path_length_m(there_and_back, 0.0, 2.0), 10.0);
+  EXPECT_DOUBLE_EQ(path_length_m(there_and_back, 0.5, 9.0), 12.0);
+  EXPECT_DOUBLE_EQ(path_length_m({}, 0.0, 1.0), 0.0);
+}
+
 }  // namespace
 }  // namespace samewhere::evaluate

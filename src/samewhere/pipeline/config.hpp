@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <samewhere/dense/config.hpp>
 #include <samewhere/describe/config.hpp>
 #include <samewhere/features/config.hpp>
 #include <samewhere/input/config.hpp>
@@ -21,6 +22,7 @@ struct Config {
   std::string source;  // what was run; makes config.yaml of a run complete
   int seed = 0;
   bool threads = true;
+  bool close_loops = true;
   input::Config input;
   twin::Config twin;
   features::Config features;
@@ -30,6 +32,7 @@ struct Config {
   map::Config map;
   verify::Config verify;
   optimize::Config optimize;
+  dense::Config dense;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
@@ -37,8 +40,11 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "what was run; written by the program, read by `samewhere eval`"});
   visit("seed", config.seed, {.help = "of everything random", .min = 0});
   visit("threads", config.threads,
-        {.help = "`loops`: describing, searching and judging in a thread each; the results are the "
-                 "same"});
+        {.help = "`run`: tracking, mapping and loop closing in a thread each; `loops`: describing, "
+                 "searching and judging; the results are the same"});
+  visit("close_loops", config.close_loops,
+        {.help = "`run`: places seen before are looked for and correct the map; false: nothing is "
+                 "corrected, but who is lost is still looked for"});
   visit("input", config.input, {.help = "Reading recordings"});
   visit("twin", config.twin, {.help = "The twin building"});
   visit("features", config.features, {.help = "Points of interest and their matches"});
@@ -48,6 +54,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("map", config.map, {.help = "Which views are kept"});
   visit("verify", config.verify, {.help = "Whether a candidate is the same place"});
   visit("optimize", config.optimize, {.help = "Solvers"});
+  visit("dense", config.dense, {.help = "Cloud, grid and octree of a finished run"});
 }
 
 // Names of the built-in profiles: "default", "paper".

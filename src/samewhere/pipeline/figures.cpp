@@ -45,20 +45,30 @@ std::string percent(int part, int whole) {
 
 }  // namespace
 
-SlamFindings findings_of(const report::RunRecord& record) {
-  return {static_cast<int>(record.frames.size()), report::measured_trajectory(record.frames),
-          record.odometry, static_cast<int>(report::final_rows(record.ledger).size()),
-          accepted_loops(record)};
+SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
+  return {static_cast<int>(record.frames.size()),
+          report::measured_trajectory(record.frames),
+          record.odometry,
+          static_cast<int>(report::final_rows(record.ledger).size()),
+          accepted_loops(record),
+          is_scale_free};
 }
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth) {
   SlamEvaluation evaluation;
   evaluation.num_frames = findings.num_frames;
   evaluation.num_measured = static_cast<int>(findings.trajectory.size());
-  evaluation.ate = evaluate::ate(truth.trajectory, findings.trajectory, evaluate::Alignment::kSe3);
-  evaluation.odometry_ate =
-      evaluate::ate(truth.trajectory, findings.odometry, evaluate::Alignment::kSe3);
-  evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory);
+  evaluation.is_scale_free = findings.is_scale_free;
+  const auto alignment =
+      findings.is_scale_free ? evaluate::Alignment::kSim3 : evaluate::Alignment::kSe3;
+  evaluation.ate = evaluate::ate(truth.trajectory, findings.trajectory, alignment);
+  evaluation.odometry_ate = evaluate::ate(truth.trajectory, findings.odometry, alignment);
+  if (evaluation.ate) {
+    evaluation.path_m = evaluate::path_length_m(
+        truth.trajectory, findings.trajectory.front().stamp_s, findings.trajectory.back().stamp_s);
+  }
+  const double scale = evaluation.ate ? evaluation.ate->scale : 1.0;
+  evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory, 1.0, scale);
   evaluation.num_candidates = findings.num_candidates;
   evaluation.loops = evaluate::check_loops(findings.loops, truth);
   evaluation.knows_impostors = !truth.impostors.empty();
@@ -67,9 +77,12 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
 
 core::Trajectory aligned_truth(const SlamEvaluation& evaluation, const core::Truth& truth) {
   if (!evaluation.ate) return {};
-  const core::Rigid3 estimate_from_truth = inverse(rigid_part(evaluation.ate->truth_from_estimate));
+  const core::Sim3 estimate_from_truth = inverse(evaluation.ate->truth_from_estimate);
   core::Trajectory aligned = truth.trajectory;
-  for (auto& pose : aligned) pose.world_from_camera = estimate_from_truth * pose.world_from_camera;
+  for (auto& pose : aligned) {
+    const core::Sim3 placed = estimate_from_truth * core::Sim3::from_rigid(pose.world_from_camera);
+    pose.world_from_camera = {placed.rotation, placed.translation};
+  }
   return aligned;
 }
 
@@ -103,8 +116,12 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
       {"frames with a measured pose", percent(evaluation.num_measured, evaluation.num_frames)}};
   if (const auto& ate = evaluation.ate) {
     figures.push_back(
-        {"ATE RMSE (median, max)",
+        {evaluation.is_scale_free ? "ATE RMSE (median, max), scale aligned"
+                                  : "ATE RMSE (median, max)",
          fmt::format("{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m)});
+  }
+  if (evaluation.path_m > 0.0) {
+    figures.push_back({"path length", fmt::format("{:.2f} m", evaluation.path_m)});
   }
   if (const auto& ate = evaluation.odometry_ate) {
     figures.push_back({"ATE RMSE before loop closing", fmt::format("{:.4f} m", ate->rmse_m)});

@@ -21,16 +21,19 @@ struct SlamFindings {
   core::Trajectory odometry;    // before any correction
   int num_candidates = 0;
   std::vector<evaluate::AcceptedLoop> loops;
+  bool is_scale_free = false;  // monocular: aligned with a scale
 };
 
-SlamFindings findings_of(const report::RunRecord& record);
+SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free);
 
 // How good a SLAM run is. Parts without a truth are absent.
 struct SlamEvaluation {
   int num_frames = 0;
   int num_measured = 0;
+  bool is_scale_free = false;
   std::optional<evaluate::AteResult> ate;
   std::optional<evaluate::AteResult> odometry_ate;
+  double path_m = 0.0;                     // the true one, while there were poses
   std::optional<evaluate::RpeResult> rpe;  // over 1 s
   int num_candidates = 0;
   evaluate::LoopCheck loops;

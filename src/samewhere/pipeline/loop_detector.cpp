@@ -10,6 +10,7 @@ LoopDetector::LoopDetector(const Config& config)
 
 std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const features::View& view,
                                                 const MeasureOdometry& measure_odometry,
+                                                const IsConnected& is_connected,
                                                 core::Timings& timings) {
   core::Descriptor descriptor;
   {
@@ -21,8 +22,28 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
     const core::ScopedTimer timer(timings, "retrieve");
     candidates = retrieve::compare(descriptor, search(descriptor));
   }
+  std::erase_if(candidates, [&](const core::Candidate& c) { return is_connected(c.match); });
   const core::ScopedTimer timer(timings, "verify");
   return judge(candidates, view, measure_odometry);
+}
+
+std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
+                                                     const features::View& view,
+                                                     core::Timings& timings) {
+  const core::ScopedTimer timer(timings, "recognise");
+  const core::Descriptor descriptor = describe(view.frame, image);
+  constexpr int kNoWindow = 0;
+  const auto no_odometry = [](const core::Candidate&, const core::Sim3&) { return std::nullopt; };
+  std::vector<core::LedgerRow> rows;
+  for (const auto& candidate :
+       retrieve::compare(descriptor, retriever_.search(descriptor, kNoWindow)))
+    rows.push_back(judged(candidate, view, no_odometry));
+  return rows;
+}
+
+void LoopDetector::remember(const core::Descriptor& descriptor, const features::View& view) {
+  retriever_.add(descriptor);
+  views_.emplace(view.frame, view);
 }
 
 core::Descriptor LoopDetector::describe(core::FrameId frame, const cv::Mat& image) {
@@ -39,13 +60,18 @@ std::vector<core::LedgerRow> LoopDetector::judge(const std::vector<core::Candida
                                                  const features::View& view,
                                                  const MeasureOdometry& measure_odometry) {
   std::vector<core::LedgerRow> rows;
-  for (core::Candidate candidate : candidates) {
-    candidate.id = core::CandidateId(num_candidates_++);
-    rows.push_back({candidate, verdict_on(candidate, view, measure_odometry)});
+  for (const core::Candidate& candidate : candidates) {
+    rows.push_back(judged(candidate, view, measure_odometry));
     if (core::is_loop(rows.back().verdict)) history_.last_loop_query = view.frame;
   }
   views_.emplace(view.frame, view);
   return rows;
+}
+
+core::LedgerRow LoopDetector::judged(core::Candidate candidate, const features::View& view,
+                                     const MeasureOdometry& measure_odometry) {
+  candidate.id = core::CandidateId(num_candidates_++, view.frame.session());
+  return {candidate, verdict_on(candidate, view, measure_odometry)};
 }
 
 core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const features::View& view,

@@ -22,19 +22,36 @@ namespace samewhere::pipeline {
 using MeasureOdometry = std::function<std::optional<core::OdometryEvidence>(
     const core::Candidate& candidate, const core::Sim3& match_from_query)>;
 
+// Whether the map holds the two views together already, by landmarks that both show: a loop between
+// them would say nothing new.
+using IsConnected = std::function<bool(core::FrameId match)>;
+
 // Have I been here before? Describe the view, search those that look alike, judge each one.
 class LoopDetector {
  public:
   explicit LoopDetector(const Config& config);
 
   // The judged candidates of this view, most similar first; the view is remembered for later ones.
-  // Frames ascend. The steps below, timed as "describe", "retrieve" and "verify".
+  // Views that are connected with it are no candidates. Frames ascend. The steps below, timed as
+  // "describe", "retrieve" and "verify".
   std::vector<core::LedgerRow> look(const cv::Mat& image, const features::View& view,
                                     const MeasureOdometry& measure_odometry,
-                                    core::Timings& timings);
+                                    const IsConnected& is_connected, core::Timings& timings);
+
+  // The same for a view whose place nobody knows: any remembered view may match it, however young;
+  // odometry says nothing, and the view itself is not remembered.
+  std::vector<core::LedgerRow> recognise(const cv::Mat& image, const features::View& view,
+                                         core::Timings& timings);
+
+  // A view of an earlier session. Frames ascend.
+  void remember(const core::Descriptor& descriptor, const features::View& view);
 
   // Of the describer: says which network it is.
   std::uint64_t describer_checksum() const { return describer_->checksum(); }
+
+  // Of the views that were looked at, oldest first.
+  int num_descriptors() const { return retriever_.num_views(); }
+  core::Descriptor descriptor(int position) const { return retriever_.view(position); }
 
   // The steps of look(). Each has its own state and gets the frames in order; so each may run in a
   // thread of its own, with the same result.
@@ -45,6 +62,8 @@ class LoopDetector {
                                      const MeasureOdometry& measure_odometry);
 
  private:
+  core::LedgerRow judged(core::Candidate candidate, const features::View& view,
+                         const MeasureOdometry& measure_odometry);
   core::Verdict verdict_on(const core::Candidate& candidate, const features::View& view,
                            const MeasureOdometry& measure_odometry) const;
 

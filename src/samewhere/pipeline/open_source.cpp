@@ -6,14 +6,16 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/input/open.hpp>
+#include <samewhere/input/rectify.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/twin/twin.hpp>
 
 namespace samewhere::pipeline {
 
 std::unique_ptr<core::Source> open_source(const Config& config) {
-  return twin::is_twin_spec(config.source) ? twin::open_twin(config.source, config.twin)
-                                           : input::open_source(config.source, config.input);
+  return input::rectified(twin::is_twin_spec(config.source)
+                              ? twin::open_twin(config.source, config.twin)
+                              : input::open_source(config.source, config.input));
 }
 
 std::unique_ptr<core::Source> open_source_with_truth(const Config& config) {
@@ -21,20 +23,19 @@ std::unique_ptr<core::Source> open_source_with_truth(const Config& config) {
   const auto walk =
       std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
   twin::watched_truth(*walk);
-  return twin::open_twin(walk, config.twin);
+  return input::rectified(twin::open_twin(walk, config.twin));
+}
+
+bool is_scale_free(const core::SourceInfo& info) {
+  return !info.has_depth && info.num_cameras == 1;
 }
 
 void require_slam_input(const core::SourceInfo& info, const Config& config) {
-  constexpr const char* kOtherwise = "(`samewhere loops` works without)";
   if (!info.is_calibrated) {
     throw core::InputError(fmt::format(
         "{}: no camera file, which `samewhere run` needs; expected camera.txt beside the "
-        "images or --set input.camera=FILE {}",
-        config.source, kOtherwise));
-  }
-  if (!info.has_depth) {
-    throw core::InputError(fmt::format("{}: no depth images, which `samewhere run` needs today {}",
-                                       config.source, kOtherwise));
+        "images or --camera FILE (`samewhere loops` works without)",
+        config.source));
   }
 }
 

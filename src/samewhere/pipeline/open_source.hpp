@@ -8,14 +8,18 @@
 
 namespace samewhere::pipeline {
 
-// A recording or a twin building, by what config.source says. Throws InputError.
+// A recording or a twin building, by what config.source says; a calibrated pair of cameras comes
+// rectified. Throws InputError.
 std::unique_ptr<core::Source> open_source(const Config& config);
 
 // The same for who asks for its truth: what a twin building has to compute for that is computed
 // now, with a progress line on stderr. Throws InputError, and Interrupted after Ctrl-C.
 std::unique_ptr<core::Source> open_source_with_truth(const Config& config);
 
-// Throws InputError if the source lacks the depth or the camera that SLAM needs.
+// Whether the size of the world cannot be measured: one camera, no depth.
+bool is_scale_free(const core::SourceInfo& info);
+
+// Throws InputError if the source lacks the camera file that SLAM needs.
 void require_slam_input(const core::SourceInfo& info, const Config& config);
 
 // The config with retrieve.window_frames: given in it, or window_s at the source's frame rate.

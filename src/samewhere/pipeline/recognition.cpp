@@ -28,7 +28,12 @@ void add_whole_frames(core::Timings& timings) {
     core::require(whole_ms.size() == durations_ms.size(), "every step has had every frame");
     for (std::size_t i = 0; i < whole_ms.size(); ++i) whole_ms[i] += durations_ms[i];
   }
-  for (const double duration_ms : whole_ms) timings.add(report::kWholeFrameStage, duration_ms);
+  double processor_ms = 0.0;
+  for (const auto& [step, step_ms] : timings.processor_ms()) processor_ms += step_ms;
+  for (const double duration_ms : whole_ms) {
+    timings.add(report::kWholeFrameStage, duration_ms,
+                processor_ms / static_cast<double>(whole_ms.size()));
+  }
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -6,8 +8,11 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/input/newest.hpp>
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/pipeline/figures.hpp>
+#include <samewhere/pipeline/map_export.hpp>
+#include <samewhere/pipeline/map_saver.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/pipeline/run.hpp>
@@ -42,14 +47,23 @@ class FrameFeed {
     try {
       const core::ScopedTimer timer(timings_, "wait for input");
       ++num_given_;
-      return source_.next();
+      std::optional<core::Frame> frame = source_.next();
+      if (frame) num_dropped_ += frame->num_dropped_before;
+      return frame;
     } catch (const core::InputError& error) {
       outcome_.record.input_error = error.what();
       return std::nullopt;
     }
   }
 
-  const core::Timings& timings() const { return timings_; }
+  // When all frames were given: how long they took to come, and what a camera lost meanwhile.
+  void report() const {
+    report::RunRecord& record = outcome_.record;
+    record.timings.add(timings_);
+    if (source_.info().is_live) {
+      record.figures.push_back({"frames dropped", fmt::format("{}", num_dropped_)});
+    }
+  }
 
  private:
   core::Source& source_;
@@ -57,15 +71,13 @@ class FrameFeed {
   core::Timings timings_;
   core::Progress progress_;
   int num_given_ = 0;
+  int num_dropped_ = 0;
 };
 
-std::vector<report::ColouredPoint> points_of(const scene::MapVersion& map) {
-  std::vector<report::ColouredPoint> points;
-  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
-    const scene::Landmark& landmark = map.landmarks[i];
-    points.push_back({position_in_world(map, landmark).cast<float>(), landmark.rgb});
-  }
-  return points;
+// Read ahead in a thread of its own: one frame, or of a camera the newest.
+std::unique_ptr<core::Source> read_ahead(std::unique_ptr<core::Source> source) {
+  const bool is_live = source->info().is_live;
+  return is_live ? input::newest(std::move(source)) : input::prefetched(std::move(source));
 }
 
 void record_frames(const Slam& slam, const std::vector<std::string>& names,
@@ -92,47 +104,134 @@ void drop_unused_thumbnails(report::RunRecord& record) {
   record.thumbnails = std::move(used);
 }
 
+// A Slam, in a known map or from nothing, and what keeps its map.
+class MappedSlam {
+ public:
+  MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan& plan)
+      : config_(config), plan_(plan) {
+    const SlamHooks hooks{
+        .keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); }};
+    if (plan.known.empty()) {
+      slam_.emplace(config, depth_from, hooks);
+      if (!plan.save.empty()) saver_.emplace(plan.save, config, slam_->describer_checksum());
+      return;
+    }
+    using enum scene::MapAccess;
+    known_ = scene::MapFile::open(plan.known, plan.is_known_fixed ? kRead : kExtend);
+    const scene::StoredMap stored = known_->load();
+    if (stored.map.keyframes.empty())
+      throw core::InputError(plan.known.string() + ": is a map without a keyframe");
+    slam_.emplace(config, stored, plan.is_known_fixed ? Slam::Use::kLocalize : Slam::Use::kExtend,
+                  hooks);
+  }
+  MappedSlam(const MappedSlam&) = delete;
+  MappedSlam& operator=(const MappedSlam&) = delete;
+
+  const Slam& slam() const { return *slam_; }
+
+  void feed(core::Frame& frame) {
+    frame.id = core::FrameId(frame.id.index(), slam_->session());
+    if (known_) take_known(*frame.rig);
+    slam_->feed(frame);
+  }
+
+  // Closes the file. What could not be saved, if anything.
+  std::optional<std::string> finish() {
+    slam_->finish();
+    if (!saver_) return std::nullopt;
+    const std::optional<std::string> error = saver_->error();
+    saver_.reset();
+    return error;
+  }
+
+ private:
+  // Called in mapping's thread.
+  void keep(const scene::MapVersion& map, const MapNews& news) {
+    if (saver_) saver_->save(map, news);
+  }
+
+  // The first frame says which camera it is.
+  void take_known(const core::Rig& rig) {
+    known_->require_same_settings(map_header(config_, rig, slam_->describer_checksum()));
+    if (!plan_.is_known_fixed) saver_.emplace(std::move(*known_));
+    known_.reset();
+  }
+
+  Config config_;
+  MapPlan plan_;
+  std::optional<scene::MapFile> known_;  // until the first frame
+  std::optional<MapSaver> saver_;
+  std::optional<Slam> slam_;  // last: its threads end before what they use
+};
+
+// The rows about two frames of this run: others speak of a session whose frames are not here.
+core::Ledger ledger_of_session(const Slam& slam) {
+  core::Ledger rows;
+  std::copy_if(
+      slam.ledger().begin(), slam.ledger().end(), std::back_inserter(rows),
+      [&](const core::LedgerRow& row) { return row.candidate.match.session() == slam.session(); });
+  return rows;
+}
+
+// What must be noted while the frame is at hand.
+void note_frame(const Slam& slam, const core::Frame& frame, report::RunRecord& record) {
+  if (!record.first_pose_s && slam.frames().back().is_measured) {
+    record.first_pose_s = core::seconds_since_program_start();
+  }
+  if (slam.is_keyframe(frame.id)) {
+    record.thumbnails[frame.id] = report::jpeg_bytes(frame.images[0], kThumbnailWidth_px);
+  }
+}
+
+void record_slam(const Slam& slam, const std::vector<std::string>& names,
+                 report::RunRecord& record) {
+  record_frames(slam, names, record);
+  record.ledger = ledger_of_session(slam);
+  record.points = points_of(slam.map());
+  record.odometry = odometry_of(slam.map(), slam.frames());
+  record.timings.add(slam.timings());
+  record.timings.add_processor(report::kWholeFrameStage, slam.processor_ms_beside());
+  drop_unused_thumbnails(record);
+}
+
 }  // namespace
 
-RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& given) {
-  const auto source = input::prefetched(std::move(unbuffered));
+RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& given,
+                    const MapPlan& plan) {
+  const auto source = read_ahead(std::move(unbuffered));
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
   const Config config = with_window_in_frames(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
-  Slam slam(config);
+  const bool is_monocular = is_scale_free(source->info());
+  MappedSlam mapped(config, is_monocular ? DepthFrom::kMotion : DepthFrom::kSensor, plan);
+  const Slam& slam = mapped.slam();
   std::vector<std::string> names;
   FrameFeed feed(*source, outcome);
-  while (const std::optional<core::Frame> frame = feed.next()) {
-    const core::ScopedTimer timer(slam.timings(), report::kWholeFrameStage);
-    slam.feed(*frame);
+  while (std::optional<core::Frame> frame = feed.next()) {
+    const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
+    mapped.feed(*frame);
     names.push_back(frame->name);
-    if (slam.is_keyframe(frame->id)) {
-      outcome.record.thumbnails[frame->id] =
-          report::jpeg_bytes(frame->images[0], kThumbnailWidth_px);
-    }
+    note_frame(slam, *frame, outcome.record);
   }
 
+  outcome.map_error = mapped.finish();
+
   report::RunRecord& record = outcome.record;
-  record_frames(slam, names, record);
-  record.ledger = slam.ledger();
-  record.points = points_of(slam.map());
-  record.odometry = odometry_of(slam.map(), slam.frames());
-  record.timings = slam.timings();
-  record.timings.add(feed.timings());
-  drop_unused_thumbnails(record);
-  const SlamEvaluation evaluation = evaluate_slam(findings_of(record), truth);
+  record_slam(slam, names, record);
+  const SlamEvaluation evaluation = evaluate_slam(findings_of(record, is_monocular), truth);
   record.figures = figures_of(evaluation);
   record.figures.push_back(
       {"keyframes / landmarks",
-       fmt::format("{} / {}", slam.map().keyframes.size(), slam.map().landmarks.size())});
+       fmt::format("{} / {}", num_live(slam.map().keyframes), num_live(slam.map().landmarks))});
   record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
+  feed.report();
   record.truth = aligned_truth(evaluation, truth);
   return outcome;
 }
 
 RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given) {
-  const auto source = input::prefetched(std::move(unbuffered));
+  const auto source = read_ahead(std::move(unbuffered));
   const core::Truth truth = source->truth();
   const Config config = with_window_in_frames(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
@@ -142,7 +241,7 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
   run([&feed] { return feed.next(); }, recognition.steps());
   std::move(recognition).report_to(outcome);
   report::RunRecord& record = outcome.record;
-  record.timings.add(feed.timings());
+  feed.report();
   drop_unused_thumbnails(record);
   const RecognitionFindings findings{static_cast<int>(record.ledger.size()), outcome.matches,
                                      outcome.accepted, config.retrieve.window_frames};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,11 +18,23 @@ struct RunOutcome {
   // Recognition alone: the best match of each query with its score, and those accepted.
   std::vector<report::ScoredPair> matches;
   std::vector<report::ScoredPair> accepted;
+  // Why the map file lacks what came last; everything else is as it should be.
+  std::optional<std::string> map_error;
 };
 
-// SLAM over a source, read one frame ahead in its own thread, with a progress line on stderr. Stops
-// early at Ctrl-C. Throws InputError if the source lacks the depth or the camera that SLAM needs.
-RunOutcome run_slam(std::unique_ptr<core::Source> source, const Config& config);
+// What a run does with map files. Empty paths: nothing.
+struct MapPlan {
+  std::filesystem::path save;  // a new file for the map, which grows with it, a commit per keyframe
+  std::filesystem::path known;  // a map to start in, lost; then nothing is saved elsewhere
+  bool is_known_fixed = false;  // localise only; else the known map grows
+};
+
+// SLAM over a source, read one frame ahead in its own thread, with a progress line on stderr. Of a
+// camera (is_live) always the newest frame; how many were dropped is a figure. Stops early at
+// Ctrl-C. Throws InputError if the source lacks the camera file that SLAM needs, or if the known
+// map cannot be used or was made with other settings.
+RunOutcome run_slam(std::unique_ptr<core::Source> source, const Config& config,
+                    const MapPlan& plan = {});
 
 // Recognition alone: every frame is a query against all older ones. Needs neither depth nor camera.
 RunOutcome run_recognition(std::unique_ptr<core::Source> source, const Config& config);

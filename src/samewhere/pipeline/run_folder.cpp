@@ -9,7 +9,6 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/evaluate/tower_walk.hpp>
-#include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
@@ -86,13 +85,13 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
   return pairs;
 }
 
-SlamFindings read_slam_findings(const std::filesystem::path& folder) {
+SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_scale_free) {
   const std::vector<double> stamps_s = read_stamps(folder / "frames.csv");
   const Json candidates = read_loops(folder / "loops.json");
   try {
-    return {static_cast<int>(stamps_s.size()), core::read_tum(folder / "trajectory.tum"),
+    return {static_cast<int>(stamps_s.size()),       core::read_tum(folder / "trajectory.tum"),
             core::read_tum(folder / "odometry.tum"), static_cast<int>(candidates.size()),
-            accepted_loops(candidates, stamps_s)};
+            accepted_loops(candidates, stamps_s),    is_scale_free};
   } catch (const Json::exception& error) {
     throw core::InputError(fmt::format("{}: a candidate is not as expected: {}",
                                        (folder / "loops.json").string(), error.what()));
@@ -104,11 +103,17 @@ SlamFindings read_slam_findings(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {
+Config config_of_run(const std::filesystem::path& folder) {
   Config config;
   const std::filesystem::path config_file = folder / "config.yaml";
   core::read_config(config, core::read_file(config_file), config_file.string());
-  const core::Truth truth = open_source(config)->truth();
+  return config;
+}
+
+std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {
+  const Config config = config_of_run(folder);
+  const auto source = open_source(config);
+  const core::Truth truth = source->truth();
   if (std::filesystem::exists(folder / "matches.txt")) {
     const RecognitionFindings findings{static_cast<int>(read_loops(folder / "loops.json").size()),
                                        read_pairs(folder / "matches.txt"),
@@ -116,7 +121,8 @@ std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder)
                                        config.retrieve.window_frames};
     return figures_of(evaluate_recognition(findings, truth));
   }
-  return figures_of(evaluate_slam(read_slam_findings(folder), truth));
+  return figures_of(
+      evaluate_slam(read_slam_findings(folder, is_scale_free(source->info())), truth));
 }
 
 std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,

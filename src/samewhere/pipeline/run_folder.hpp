@@ -3,9 +3,14 @@
 #include <filesystem>
 #include <vector>
 
+#include <samewhere/pipeline/config.hpp>
 #include <samewhere/report/record.hpp>
 
 namespace samewhere::pipeline {
+
+// The config that was in force in a finished run. Throws InputError if config.yaml is missing or
+// broken.
+Config config_of_run(const std::filesystem::path& folder);
 
 // The figures of a finished run, measured anew from the files in its folder against the truth that
 // comes with its source (config.yaml says which). Recognition alone is told by its matches.txt.

@@ -1,158 +1,109 @@
-#include <samewhere/correct/loop_corrector.hpp>
-#include <samewhere/features/orb.hpp>
+#include <utility>
+
+#include <samewhere/core/errors.hpp>
 #include <samewhere/pipeline/slam.hpp>
-#include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::pipeline {
+namespace {
 
-Slam::Slam(const Config& config)
-    : config_(config),
-      tracker_({config.track, config.features, config.optimize,
-                static_cast<std::uint64_t>(config.seed)}),
-      detector_(config) {}
+template <class Message, class Answer>
+std::unique_ptr<core::Link<Message, Answer>> link_to(
+    typename core::Link<Message, Answer>::Serve stage, bool in_thread, int capacity,
+    core::Dawdle dawdle) {
+  if (!in_thread) return std::make_unique<core::DirectLink<Message, Answer>>(std::move(stage));
+  return std::make_unique<core::ThreadLink<Message, Answer>>(
+      std::move(stage), static_cast<std::size_t>(capacity), std::move(dawdle));
+}
+
+// Mapping asks about a keyframe before it hears the answer to the one `lag` before it.
+std::unique_ptr<LoopLink> link_to(LoopClosing& stage, const Config& config,
+                                  const SlamHooks& hooks) {
+  return link_to<ToLoopClosing, LoopAnswer>(
+      [&stage](const ToLoopClosing& message, const LoopLink::Reply& reply) {
+        reply(stage.answer(message));
+      },
+      config.threads, config.map.loop_lag_keyframes, hooks.dawdle);
+}
+
+// One keyframe is under way at most.
+std::unique_ptr<MappingLink> link_to(Mapping& stage, const Config& config, const SlamHooks& hooks) {
+  return link_to<ToMapping, MapAnswer>(
+      [&stage](const ToMapping& message, const MappingLink::Reply& reply) {
+        stage.take(message, reply);
+      },
+      config.threads, 1, hooks.dawdle);
+}
+
+}  // namespace
+
+Slam::Slam(const Config& config, DepthFrom depth_from, const SlamHooks& hooks)
+    : loop_closing_(config),
+      loop_link_(link_to(loop_closing_, config, hooks)),
+      mapping_(config, {}, *loop_link_, hooks.keep_map),
+      mapping_link_(link_to(mapping_, config, hooks)),
+      tracking_(config, depth_from, *mapping_link_) {}
+
+Slam::Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamHooks& hooks)
+    : loop_closing_(config, known),
+      loop_link_(link_to(loop_closing_, config, hooks)),
+      mapping_(config, known.map, *loop_link_, hooks.keep_map),
+      mapping_link_(link_to(mapping_, config, hooks)),
+      tracking_(config, known, use == Use::kLocalize, *mapping_link_) {
+  core::require(!known.map.keyframes.empty(), "a known map holds a keyframe");
+}
 
 void Slam::feed(const core::Frame& frame) {
-  features::View view;
-  std::optional<map::TrackedView> tracked;
-  {
-    const core::ScopedTimer timer(timings_, "track");
-    view = features::extract(frame, config_.features);
-    tracked = locate(view);
-  }
-  if (!tracked) {
-    frames_.push_back({.frame = view.frame, .stamp_s = view.stamp_s});
-    return;
-  }
-  frames_.push_back(tracked->pose);
-  const bool is_first = tracked->pose.status == core::FrameStatus::kStarting;
-  if (is_first || map::is_worth_keeping(map_, *tracked, config_.map)) {
-    if (!is_first) keep(*tracked);
-    look_for_loops(frame, view);
-  }
+  core::require(!is_finished_ && !is_broken_, "no frame comes after the last, or after an error");
+  is_broken_ = true;  // until it is known that nothing was thrown
+  tracking_.feed(frame);
+  is_broken_ = false;
 }
 
-std::optional<map::TrackedView> Slam::locate(const features::View& view) {
-  if (map_.keyframes.empty()) {
-    if (!map::can_start(view, config_.map)) return std::nullopt;
-    start(view);
-    return last_;
-  }
-  auto tracked = locate_in_map(view);
-  if (tracked) {
-    remember(*tracked);
-  } else {
-    last_.reset();
-  }
-  return tracked;
+void Slam::finish() {
+  core::require(!is_finished_ && !is_broken_, "the input ends once, and not after an error");
+  is_broken_ = true;
+  tracking_.finish();
+  mapping_link_->finish();
+  loop_link_->finish();
+  is_broken_ = false;
+  is_finished_ = true;
 }
 
-std::optional<map::TrackedView> Slam::locate_in_map(const features::View& view) {
-  std::optional<map::TrackedView> best = track_from_last(view);
-  const bool is_poor = !best || best->pose.status == core::FrameStatus::kWeak;
-  const bool can_promote = last_ && !keyframe_of_.contains(last_->view.frame) &&
-                           map::num_with_depth(last_->view) >= config_.map.min_landmarks;
-  if (is_poor && can_promote) {
-    // the reference is too far away: what the last frame saw is nearer
-    keep(*last_);
-    auto nearer = track_from_last(view);
-    if (nearer && (!best || nearer->pose.num_inliers > best->pose.num_inliers)) best = nearer;
-  }
-  if (best && !last_) best->pose.status = core::FrameStatus::kResumed;
-  return best;
+const scene::MapVersion& Slam::map() const {
+  require_finished();
+  return mapping_.map();
 }
 
-std::optional<map::TrackedView> Slam::track_from_last(const features::View& view) {
-  const auto track = last_ ? tracker_.track(view, local_map_, guessed_pose())
-                           : tracker_.track_anywhere(view, local_map_);
-  if (!track) return std::nullopt;
-  return tracked_view(view, *track);
+const core::Ledger& Slam::ledger() const {
+  require_finished();
+  return loop_closing_.ledger();
 }
 
-// The last step once more, relative to the reference of the local map.
-core::Rigid3 Slam::guessed_pose() const {
-  const core::Rigid3 world_from_last =
-      map_.at(last_->pose.reference_keyframe).world_from_body * last_->pose.reference_from_frame;
-  return inverse(map_.at(local_map_.reference).world_from_body) * world_from_last * last_from_next_;
+std::vector<core::Descriptor> Slam::descriptors() const {
+  require_finished();
+  const LoopDetector& detector = loop_closing_.detector();
+  std::vector<core::Descriptor> descriptors;
+  for (int i = 0; i < detector.num_descriptors(); ++i)
+    descriptors.push_back(detector.descriptor(i));
+  return descriptors;
 }
 
-// The motion of this frame against the last, relative to one keyframe.
-void Slam::remember(const map::TrackedView& tracked) {
-  last_from_next_ = core::Rigid3{};
-  if (last_) {
-    const core::Rigid3 world_from_last =
-        map_.at(last_->pose.reference_keyframe).world_from_body * last_->pose.reference_from_frame;
-    const core::Rigid3 world_from_this = map_.at(tracked.pose.reference_keyframe).world_from_body *
-                                         tracked.pose.reference_from_frame;
-    last_from_next_ = inverse(world_from_last) * world_from_this;
-  }
-  last_ = tracked;
+core::Timings Slam::timings() const {
+  require_finished();
+  core::Timings timings = tracking_.timings();
+  timings.add(mapping_.timings());
+  timings.add(loop_closing_.timings());
+  return timings;
 }
 
-void Slam::start(const features::View& view) {
-  apply(map::start_map(map_, view, core::Rigid3{}));
-  const core::KeyframeId first = map_.keyframes.back().id;
-  keyframe_of_[view.frame] = first;
-  local_map_ = scene::build_local_map(map_, first, config_.map.max_neighbours);
-  map::TrackedView tracked{view, {}, {}};
-  tracked.pose = {.frame = view.frame,
-                  .stamp_s = view.stamp_s,
-                  .status = core::FrameStatus::kStarting,
-                  .is_measured = true,
-                  .reference_keyframe = first,
-                  .num_inliers = map::num_with_depth(view)};
-  last_ = tracked;
+double Slam::processor_ms_beside() const {
+  require_finished();
+  return mapping_link_->processor_ms() + loop_link_->processor_ms();
 }
 
-void Slam::keep(const map::TrackedView& tracked) {
-  const core::ScopedTimer timer(timings_, "map");
-  apply(map::add_keyframe(map_, tracked));
-  const core::KeyframeId added = map_.keyframes.back().id;
-  keyframe_of_[tracked.view.frame] = added;
-  local_map_ = scene::build_local_map(map_, added, config_.map.max_neighbours);
-  // from now on the frame is where its keyframe is, wherever a loop moves it
-  for (core::FramePose* pose : {&last_->pose, &frames_.back()}) {
-    core::require(pose->frame == tracked.view.frame, "the frame that is kept is the last one");
-    pose->reference_keyframe = added;
-    pose->reference_from_frame = core::Rigid3{};
-  }
+void Slam::require_finished() const {
+  core::require(is_finished_, "what the stages own is looked at when they have ended");
 }
-
-void Slam::look_for_loops(const core::Frame& frame, const features::View& view) {
-  const auto measure_odometry = [&](const core::Candidate& candidate,
-                                    const core::Sim3& match_from_query) {
-    return std::optional(verify::measure_odometry(map_, keyframe_of_.at(candidate.query),
-                                                  keyframe_of_.at(candidate.match),
-                                                  rigid_part(match_from_query), config_.verify));
-  };
-  const std::vector<core::LedgerRow> rows =
-      detector_.look(frame.images[0], view, measure_odometry, timings_);
-  ledger_.insert(ledger_.end(), rows.begin(), rows.end());
-  correct(rows);
-}
-
-void Slam::correct(const std::vector<core::LedgerRow>& rows) {
-  const core::ScopedTimer timer(timings_, "correct");
-  for (const auto& row : rows) {
-    const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
-    if (loop == nullptr || !loop->match_from_query) continue;
-    const scene::LoopEdge edge{
-        keyframe_of_.at(row.candidate.query), keyframe_of_.at(row.candidate.match),
-        rigid_part(*loop->match_from_query), loop->information, loop->candidate};
-    apply(correct::close_loop(map_, edge, config_.optimize));
-    local_map_ = scene::build_local_map(map_, local_map_.reference, config_.map.max_neighbours);
-  }
-}
-
-map::TrackedView Slam::tracked_view(const features::View& view, const track::Track& track) const {
-  map::TrackedView tracked{view, track.pose, {}};
-  for (const auto& match : track.matches) {
-    tracked.landmarks.emplace_back(match.second,
-                                   local_map_.landmarks[static_cast<std::size_t>(match.first)]);
-  }
-  return tracked;
-}
-
-void Slam::apply(const scene::Edit& edit) { map_ = scene::apply(std::move(map_), edit); }
 
 namespace {
 
@@ -164,7 +115,7 @@ core::Trajectory placed(const scene::MapVersion& map, const std::vector<core::Fr
   for (const auto& frame : frames) {
     if (!frame.is_measured) continue;
     const core::Rigid3& body_from_camera =
-        map.at(frame.reference_keyframe).view.rig->body_from_camera[0];
+        map.at(frame.reference_keyframe).view.rig->body_from_told_camera();
     trajectory.push_back({frame.stamp_s, world_from_keyframe(frame.reference_keyframe) *
                                              frame.reference_from_frame * body_from_camera});
   }
@@ -175,7 +126,7 @@ core::Trajectory placed(const scene::MapVersion& map, const std::vector<core::Fr
 
 core::Trajectory trajectory_of(const scene::MapVersion& map,
                                const std::vector<core::FramePose>& frames) {
-  return placed(map, frames, [&](core::KeyframeId id) { return map.at(id).world_from_body; });
+  return placed(map, frames, [&](core::KeyframeId id) { return world_from_body(map, id); });
 }
 
 core::Trajectory odometry_of(const scene::MapVersion& map,

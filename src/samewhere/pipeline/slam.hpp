@@ -1,69 +1,70 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
-#include <samewhere/core/frame.hpp>
-#include <samewhere/core/frame_pose.hpp>
-#include <samewhere/core/ledger.hpp>
-#include <samewhere/core/timing.hpp>
 #include <samewhere/core/truth.hpp>
-#include <samewhere/map/mapper.hpp>
-#include <samewhere/pipeline/config.hpp>
-#include <samewhere/pipeline/loop_detector.hpp>
-#include <samewhere/scene/local_map.hpp>
-#include <samewhere/track/tracker.hpp>
+#include <samewhere/pipeline/loop_closing.hpp>
+#include <samewhere/pipeline/mapping.hpp>
+#include <samewhere/pipeline/tracking.hpp>
 
 namespace samewhere::pipeline {
 
-// The whole system on one thread: frames in, poses, a map and a ledger of judged loops out.
+// What the owner of a Slam may have done in its stages, in their threads. Both may be empty.
+struct SlamHooks {
+  KeepMap keep_map;
+  core::Dawdle dawdle;  // for tests
+};
+
+// The whole system: frames in, poses, a map and a ledger of judged loops out. Three stages, each of
+// which knows nothing of threads: tracking asks mapping, mapping asks loop closing. Tracking works
+// on the caller's thread; the others on a thread each (`threads`), or on the caller's. When an
+// answer counts is a matter of frames and keyframes, never of time: the results are the same to the
+// bit, however the threads run.
 class Slam {
  public:
-  explicit Slam(const Config& config);
+  explicit Slam(const Config& config, DepthFrom depth_from = DepthFrom::kSensor,
+                const SlamHooks& hooks = {});
+  // In a map that is there: lost until a place is recognised. kExtend: the map grows from there on;
+  // kLocalize: it stays as it is. The map holds a keyframe, and was made with the settings that
+  // map_header() names.
+  enum class Use { kExtend, kLocalize };
+  Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamHooks& hooks = {});
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
 
-  // Frames ascend in id and stamp.
+  // Frames are numbered from 0, in session(). Their pictures are shared: nobody writes to them any
+  // more. Throws what a stage threw; then nothing may follow.
   void feed(const core::Frame& frame);
+  // Nothing comes any more: what is under way is done. Throws as feed() does.
+  void finish();
 
+  std::uint16_t session() const { return tracking_.session(); }
   // One entry per frame fed.
-  const std::vector<core::FramePose>& frames() const { return frames_; }
-  const scene::MapVersion& map() const { return map_; }
-  const core::Ledger& ledger() const { return ledger_; }
-  bool is_keyframe(core::FrameId frame) const { return keyframe_of_.contains(frame); }
-  std::uint64_t describer_checksum() const { return detector_.describer_checksum(); }
-  core::Timings& timings() { return timings_; }
+  const std::vector<core::FramePose>& frames() const { return tracking_.frames(); }
+  bool is_keyframe(core::FrameId frame) const { return tracking_.is_keyframe(frame); }
+  std::uint64_t describer_checksum() const { return loop_closing_.detector().describer_checksum(); }
+
+  // From here on: after finish().
+  const scene::MapVersion& map() const;
+  const core::Ledger& ledger() const;
+  // What the views that loops are looked for among look like, oldest first.
+  std::vector<core::Descriptor> descriptors() const;
+  core::Timings timings() const;
+  // Spent by the stages beside the caller's thread.
+  double processor_ms_beside() const;
 
  private:
-  // Where am I? Nothing: lost.
-  std::optional<map::TrackedView> locate(const features::View& view);
-  std::optional<map::TrackedView> locate_in_map(const features::View& view);
-  std::optional<map::TrackedView> track_from_last(const features::View& view);
-  core::Rigid3 guessed_pose() const;
-  // The view becomes the reference that the next frames are tracked from.
-  void keep(const map::TrackedView& tracked);
-  void start(const features::View& view);
-  // Have I been here before, and is it really the same place? Then the past must be corrected.
-  void look_for_loops(const core::Frame& frame, const features::View& view);
-  void correct(const std::vector<core::LedgerRow>& rows);
+  void require_finished() const;
 
-  map::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
-  void apply(const scene::Edit& edit);
-  void remember(const map::TrackedView& tracked);
-
-  Config config_;
-  core::Timings timings_;
-  track::Tracker tracker_;
-  LoopDetector detector_;
-
-  scene::MapVersion map_;
-  scene::LocalMap local_map_;
-  core::Ledger ledger_;
-  std::vector<core::FramePose> frames_;
-  std::map<core::FrameId, core::KeyframeId> keyframe_of_;
-
-  std::optional<map::TrackedView> last_;  // the frame before, if it was located
-  core::Rigid3 last_from_next_;           // motion model: the last step once more
+  // in the order in which they are asked, from the last: each ends before those that it asks
+  LoopClosing loop_closing_;
+  std::unique_ptr<LoopLink> loop_link_;
+  Mapping mapping_;
+  std::unique_ptr<MappingLink> mapping_link_;
+  Tracking tracking_;
+  bool is_finished_ = false;
+  bool is_broken_ = false;  // a stage has thrown
 };
 
 // Pose of camera 0 at each measured frame, after all corrections: derived from the reference

@@ -81,6 +81,7 @@ TEST(TimingJson, SumsUpEachStage) {
   EXPECT_EQ(frame.at("median_ms"), 10.0);
   EXPECT_EQ(frame.at("p95_ms"), 30.0);
   EXPECT_EQ(frame.at("p99_ms"), 30.0);
+  EXPECT_EQ(frame.at("processor_ms"), 24.0);
 }
 
 TEST(TimingJson, WithoutATimedFrameThereIsNoRate) {

@@ -61,6 +61,11 @@ Json entry_of(const core::LedgerRow& row) {
           {"match_from_query", pose_of(row.verdict)}};
 }
 
+// A name that is no UTF-8 must not cost the whole text.
+std::string dumped(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict) {
@@ -78,8 +83,17 @@ std::string loops_json(const core::Ledger& ledger) {
   Json candidates = Json::array();
   for (const core::LedgerRow* row : final_rows(ledger)) candidates.push_back(entry_of(*row));
   const Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
-  // a name that is no UTF-8 must not cost the whole file
-  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return dumped(document, 1) + "\n";
+}
+
+std::string ledger_row_json(const core::LedgerRow& row) {
+  Json entry = entry_of(row);
+  const core::FrameId query = row.candidate.query;
+  if (query.session() != 0) {
+    entry["query_session"] = query.session();
+    entry["match_session"] = row.candidate.match.session();
+  }
+  return dumped(entry, -1);
 }
 
 std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger) {

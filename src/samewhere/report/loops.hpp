@@ -17,6 +17,10 @@ std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict);
 // not finite are left out.
 std::string loops_json(const core::Ledger& ledger);
 
+// One row as an entry of loops.json, on one line; with "query_session" and "match_session" if the
+// query is not of the first session.
+std::string ledger_row_json(const core::LedgerRow& row);
+
 // One line of matches.txt or accepted.txt.
 struct ScoredPair {
   core::FrameId query;

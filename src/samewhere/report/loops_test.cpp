@@ -19,6 +19,16 @@ using Json = nlohmann::json;
 
 Json parsed(const core::Ledger& ledger) { return Json::parse(loops_json(ledger)); }
 
+TEST(LedgerRowJson, IsAnEntryOnOneLineThatNamesALaterSession) {
+  core::LedgerRow row = sample_ledger().front();
+  const std::string text = ledger_row_json(row);
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_EQ(Json::parse(text), parsed({row}).at("candidates").at(0));
+  row.candidate.query = core::FrameId(7, 2);
+  EXPECT_EQ(Json::parse(ledger_row_json(row)).at("query_session"), 2);
+  EXPECT_EQ(Json::parse(ledger_row_json(row)).at("match_session"), 0);
+}
+
 TEST(LoopsJson, FollowsTheSchema) {
   const Json document = parsed(sample_ledger());
   EXPECT_EQ(document.at("version"), 1);

@@ -50,6 +50,7 @@ struct RunRecord {
   std::vector<Figure> figures;
   core::Timings timings;  // stage kWholeFrameStage is what frames per second are counted by
   std::string config_yaml;
+  std::optional<double> first_pose_s;  // from the program's start to the first measured pose
   bool is_interrupted = false;
   std::optional<std::string> input_error;  // the source broke: what came after is missing
 };

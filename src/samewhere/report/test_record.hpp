@@ -167,8 +167,8 @@ inline RunRecord sample_record() {
                     {"loops accepted, right / wrong", "3 / 0"},
                     {"keyframes", "32"}};
   record.config_yaml = "verify:\n  min_inliers: 30\n";
-  record.timings.add(kWholeFrameStage, 10.0);
-  record.timings.add(kWholeFrameStage, 30.0);
+  record.timings.add(kWholeFrameStage, 10.0, 8.0);
+  record.timings.add(kWholeFrameStage, 30.0, 16.0);
   record.timings.add("track", 8.0);
   return record;
 }

@@ -6,8 +6,9 @@
 
 namespace samewhere::report {
 
-// timing.json: per stage count, median_ms, p95_ms, p99_ms, total_ms; peak_memory_mib; and
-// frames_per_second, eq. (26), by the stage kWholeFrameStage (null if it was not timed).
+// timing.json: per stage count, median_ms, p95_ms, p99_ms, total_ms and processor_ms (in all, of
+// the stage's thread); peak_memory_mib; and frames_per_second, eq. (26), by the stage
+// kWholeFrameStage (null if it was not timed).
 std::string timing_json(const core::Timings& timings, double peak_memory_mib);
 
 }  // namespace samewhere::report

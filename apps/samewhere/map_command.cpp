@@ -1,0 +1,56 @@
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "print.hpp"
+#include <samewhere/core/errors.hpp>
+#include <samewhere/pipeline/map_export.hpp>
+
+namespace samewhere::app {
+namespace {
+
+struct MapCommand {
+  std::string file;
+  std::string ply;
+  std::string tum;
+  std::string kitti;
+  std::string g2o;
+};
+
+void add_info(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
+  map.add_subcommand("info", "What is in the map, and the settings it was made with")
+      ->callback([command] {
+        scene::MapFile file = scene::MapFile::open(command->file);
+        print_figures(pipeline::figures_of_map(file.header(), file.load()));
+      });
+}
+
+void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
+  CLI::App* sub = map.add_subcommand("export", "Write the map in the formats of the field");
+  sub->add_option("--ply", command->ply, "landmarks as a point cloud");
+  sub->add_option("--tum", command->tum, "measured frames: stamp tx ty tz qx qy qz qw");
+  sub->add_option("--kitti", command->kitti, "the same frames, without stamps: 3 x 4 matrices");
+  sub->add_option("--g2o", command->g2o, "keyframes, odometry and loops as a pose graph");
+  sub->require_option(1, 0);
+  sub->callback([command] {
+    pipeline::export_map(scene::MapFile::open(command->file).load(),
+                         {command->ply, command->tum, command->kitti, command->g2o});
+  });
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app) {
+  auto command = std::make_shared<MapCommand>();
+  CLI::App* sub = app.add_subcommand("map", "Look into a map file, or export it");
+  sub->add_option("FILE", command->file, "map.sw of a run")->required();
+  sub->require_subcommand(1);
+  add_info(*sub, command);
+  add_export(*sub, command);
+  sub->footer(
+      "Examples:\n"
+      "  samewhere map runs/demo/map.sw info\n"
+      "  samewhere map runs/demo/map.sw export --ply points.ply --g2o graph.g2o");
+}
+
+}  // namespace samewhere::app

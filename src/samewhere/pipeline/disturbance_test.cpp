@@ -1,0 +1,117 @@
+// What happens when the camera sees badly for a while.
+
+#include <functional>
+#include <optional>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/slam.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+constexpr int kNumFrames = 120;  // 8 s
+constexpr double kRight_m = 0.1;
+
+// How many frames of a walk have a pose, and how many of these poses are right.
+struct Outcome {
+  int num_fed = 0;
+  int num_measured = 0;
+  int num_right = 0;
+  std::vector<bool> is_measured;  // per frame of the walk; false: dropped too
+};
+
+// A frame as it reaches the program; nothing: it does not.
+using Disturb = std::function<std::optional<core::Frame>(core::Frame)>;
+
+Outcome outcome_of(const Disturb& disturb) {
+  cv::setNumThreads(1);
+  Config config;
+  config.source = "twin:office-loop?seed=7";
+  config.twin.num_frames = kNumFrames;
+  config.retrieve.window_frames = 75;
+  const auto source = open_source(config);
+  const core::Trajectory truth = source->truth().trajectory;
+  Slam slam(config);
+  Outcome outcome{.is_measured = std::vector<bool>(kNumFrames, false)};
+  std::vector<std::size_t> fed;
+  while (auto frame = source->next()) {
+    const std::size_t position = frame->id.index();
+    auto disturbed = disturb(std::move(*frame));
+    if (!disturbed) continue;
+    disturbed->id = core::FrameId(fed.size());
+    fed.push_back(position);
+    slam.feed(*disturbed);
+  }
+  slam.finish();
+  outcome.num_fed = static_cast<int>(fed.size());
+  for (std::size_t i = 0; i < fed.size(); ++i) {
+    const core::FramePose& pose = slam.frames()[i];
+    if (!pose.is_measured) continue;
+    ++outcome.num_measured;
+    outcome.is_measured[fed[i]] = true;
+    const core::Rigid3 found =
+        world_from_body(slam.map(), pose.reference_keyframe) * pose.reference_from_frame;
+    const core::Rigid3 expected =
+        inverse(truth[fed[0]].world_from_camera) * truth[fed[i]].world_from_camera;
+    if ((inverse(expected) * found).translation.norm() < kRight_m) ++outcome.num_right;
+  }
+  return outcome;
+}
+
+bool is_between(const core::Frame& frame, std::size_t first, std::size_t last) {
+  return frame.id.index() >= first && frame.id.index() <= last;
+}
+
+TEST(Disturbance, InTwoSecondsOfDarkThereIsNoPoseAndThenThereIsARightOneAgain) {
+  const Outcome outcome = outcome_of([](core::Frame frame) {
+    if (is_between(frame, 50, 79)) {
+      frame.images[0] = cv::Mat::zeros(frame.images[0].size(), frame.images[0].type());
+      frame.depth_m->setTo(0.0);
+    }
+    return std::optional(frame);
+  });
+  for (std::size_t i = 50; i <= 79; ++i) EXPECT_FALSE(outcome.is_measured[i]) << i;
+  EXPECT_GE(outcome.num_measured, 80) << "of the 90 in light";
+  EXPECT_EQ(outcome.num_right, outcome.num_measured);
+}
+
+TEST(Disturbance, ALensThatIsHalfCoveredLeavesTheOtherHalf) {
+  const Outcome outcome = outcome_of([](core::Frame frame) {
+    if (is_between(frame, 50, 79)) {
+      frame.images[0] = frame.images[0].clone();
+      const cv::Rect covered(0, 0, frame.images[0].cols / 2, frame.images[0].rows);
+      frame.images[0](covered).setTo(10);
+    }
+    return std::optional(frame);
+  });
+  EXPECT_EQ(outcome.num_measured, kNumFrames);
+  EXPECT_EQ(outcome.num_right, kNumFrames);
+}
+
+TEST(Disturbance, OneFrameInTenMayBeMissing) {
+  core::Random random(3);
+  const Outcome outcome = outcome_of([&](core::Frame frame) {
+    return random.uniform() < 0.1 ? std::nullopt : std::optional(std::move(frame));
+  });
+  EXPECT_LT(outcome.num_fed, kNumFrames - 5);
+  EXPECT_EQ(outcome.num_measured, outcome.num_fed);
+  EXPECT_EQ(outcome.num_right, outcome.num_fed);
+}
+
+TEST(Disturbance, ASuddenChangeOfExposureCostsNoPose) {
+  const Outcome outcome = outcome_of([](core::Frame frame) {
+    if (is_between(frame, 40, 69)) frame.images[0].convertTo(frame.images[0], -1, 0.4, 0.0);
+    if (is_between(frame, 70, 99)) frame.images[0].convertTo(frame.images[0], -1, 1.6, 20.0);
+    return std::optional(frame);
+  });
+  EXPECT_EQ(outcome.num_measured, kNumFrames);
+  EXPECT_EQ(outcome.num_right, kNumFrames);
+}
+
+}  // namespace
+}  // namespace samewhere::pipeline

@@ -1,0 +1,90 @@
+#include <utility>
+
+#include <samewhere/pipeline/loop_closing.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+// Itself and those that share enough landmarks with it.
+std::set<core::KeyframeId> neighbours_of(const scene::MapVersion& map, core::KeyframeId keyframe,
+                                         int min_shared) {
+  std::set<core::KeyframeId> neighbours = {keyframe};
+  for (const auto& covisible : covisible_keyframes(map, keyframe)) {
+    if (covisible.num_shared >= min_shared) neighbours.insert(covisible.keyframe);
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+LoopClosing::LoopClosing(const Config& config) : config_(config), detector_(config) {}
+
+LoopClosing::LoopClosing(const Config& config, const scene::StoredMap& known)
+    : LoopClosing(config) {
+  for (std::size_t i = 0; i < known.map.keyframes.size(); ++i)
+    keyframe_of_[known.map.keyframes[i].view.frame] = known.map.keyframes[i].id;
+  for (const auto& descriptor : known.extras.descriptors) {
+    const auto keyframe = keyframe_of_.find(descriptor.frame);
+    if (keyframe != keyframe_of_.end())
+      detector_.remember(descriptor, known.map.at(keyframe->second).view);
+  }
+}
+
+LoopAnswer LoopClosing::answer(const ToLoopClosing& message) {
+  LoopAnswer answer =
+      std::visit([this](const auto& question) { return this->answer(question); }, message);
+  ledger_.insert(ledger_.end(), answer.rows.begin(), answer.rows.end());
+  return answer;
+}
+
+LoopAnswer LoopClosing::answer(const FindLoops& question) {
+  if (question.image.empty()) return {};
+  const scene::MapVersion& map = question.map;
+  const features::View& view = map.at(question.keyframe).view;
+  keyframe_of_[view.frame] = question.keyframe;
+  LoopAnswer answer;
+  if (!config_.close_loops) {  // who is lost is found all the same
+    answer.descriptor = detector_.describe(view.frame, question.image);
+    detector_.remember(*answer.descriptor, view);
+    return answer;
+  }
+  const auto measure_odometry = [&](const core::Candidate& candidate,
+                                    const core::Sim3& match_from_query) {
+    return std::optional(verify::measure_odometry(map, question.keyframe,
+                                                  keyframe_of_.at(candidate.match),
+                                                  rigid_part(match_from_query), config_.verify));
+  };
+  const std::set<core::KeyframeId> neighbours =
+      neighbours_of(map, question.keyframe, config_.map.min_shared);
+  const auto is_connected = [&](core::FrameId match) {
+    return neighbours.contains(holder_of(map, keyframe_of_.at(match)).keyframe);
+  };
+  answer.rows = detector_.look(question.image, view, measure_odometry, is_connected, timings_);
+  for (const auto& row : answer.rows) {
+    const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
+    if (loop != nullptr && loop->match_from_query) answer.loops.push_back(edge_of(row, *loop));
+  }
+  answer.descriptor = detector_.descriptor(detector_.num_descriptors() - 1);
+  return answer;
+}
+
+LoopAnswer LoopClosing::answer(const FindPlace& question) {
+  LoopAnswer answer;
+  answer.rows = detector_.recognise(question.image, question.view, timings_);
+  const core::LedgerRow* best = best_of_query(answer.rows, config_.verify);
+  const auto* place = best == nullptr ? nullptr : std::get_if<core::LoopClosure>(&best->verdict);
+  if (place == nullptr) return answer;
+  answer.place = Place{.keyframe = keyframe_of_.at(best->candidate.match)};
+  if (place->match_from_query)
+    answer.place->keyframe_from_body = rigid_part(*place->match_from_query);
+  return answer;
+}
+
+scene::LoopEdge LoopClosing::edge_of(const core::LedgerRow& row,
+                                     const core::LoopClosure& loop) const {
+  return {keyframe_of_.at(row.candidate.query), keyframe_of_.at(row.candidate.match),
+          rigid_part(*loop.match_from_query), loop.information, loop.candidate};
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <set>
+
+#include <samewhere/core/timing.hpp>
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/loop_detector.hpp>
+#include <samewhere/pipeline/messages.hpp>
+#include <samewhere/scene/map_file.hpp>
+
+namespace samewhere::pipeline {
+
+// The third stage: have I been here before, and is it really the same place? Owns the place index
+// and the ledger.
+class LoopClosing {
+ public:
+  explicit LoopClosing(const Config& config);
+  // Remembers the views of a known map.
+  LoopClosing(const Config& config, const scene::StoredMap& known);
+
+  // One answer to each message.
+  LoopAnswer answer(const ToLoopClosing& message);
+
+  const core::Ledger& ledger() const { return ledger_; }
+  const LoopDetector& detector() const { return detector_; }
+  const core::Timings& timings() const { return timings_; }
+
+ private:
+  LoopAnswer answer(const FindLoops& question);
+  // Which place of the whole map is this? The judge of loops decides.
+  LoopAnswer answer(const FindPlace& question);
+  scene::LoopEdge edge_of(const core::LedgerRow& row, const core::LoopClosure& loop) const;
+
+  Config config_;
+  core::Timings timings_;
+  LoopDetector detector_;
+  core::Ledger ledger_;
+  std::map<core::FrameId, core::KeyframeId> keyframe_of_;  // of views that are remembered
+};
+
+}  // namespace samewhere::pipeline

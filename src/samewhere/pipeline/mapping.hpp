@@ -1,0 +1,52 @@
+#pragma once
+
+#include <samewhere/core/timing.hpp>
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/messages.hpp>
+
+namespace samewhere::pipeline {
+
+// The second stage: what does a new view add to the map? Owns the map.
+class Mapping {
+ public:
+  // The map so far may be empty. `loops` outlives this.
+  Mapping(const Config& config, scene::MapVersion so_far, LoopLink& loops, KeepMap keep_map);
+
+  // Does what a message of tracking asks for, and goes on to better the map after the answer.
+  void take(const ToMapping& message, const MappingLink::Reply& reply);
+
+  const scene::MapVersion& map() const { return map_; }
+  const core::Timings& timings() const { return timings_; }
+
+ private:
+  void take(const StartMap& message, const MappingLink::Reply& reply);
+  void take(const StartMapByMotion& message, const MappingLink::Reply& reply);
+  void take(const AddKeyframe& message, const MappingLink::Reply& reply);
+  void take(const FindPlace& message, const MappingLink::Reply& reply);
+  void take(const EndOfInput& message, const MappingLink::Reply& reply);
+
+  // Points between the newest keyframe and its neighbours, landmarks that are one.
+  void connect_newest();
+  // Better poses and points around the newest keyframe; then what proved to be no good goes.
+  void refine_newest();
+  // Have I seen this place before? The answer is heard later.
+  void ask_for_loops(const cv::Mat& image);
+  // Loop closing's answers until so few are still to come; each corrects the past.
+  void hear_loops(int max_unheard);
+  void note(const LoopAnswer& answer);
+  void correct(const scene::LoopEdge& loop);
+
+  void add_frames(const std::vector<core::FramePose>& frames);
+  void keep_map();
+  void apply(const scene::Edit& edit);
+
+  Config config_;
+  core::Timings timings_;
+  LoopLink& loops_;
+  KeepMap keep_map_;
+  scene::MapVersion map_;
+  int num_unheard_ = 0;  // questions to loop closing whose answers are to come
+  MapNews news_;         // since the map was kept
+};
+
+}  // namespace samewhere::pipeline

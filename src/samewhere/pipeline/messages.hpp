@@ -1,0 +1,101 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include <samewhere/core/descriptor.hpp>
+#include <samewhere/core/frame_pose.hpp>
+#include <samewhere/core/ledger.hpp>
+#include <samewhere/core/link.hpp>
+#include <samewhere/map/mapper.hpp>
+#include <samewhere/scene/map_version.hpp>
+
+// What the three stages of SLAM say to each other. Tracking asks mapping, mapping asks loop
+// closing; nobody else talks.
+
+namespace samewhere::pipeline {
+
+// --- Tracking to mapping. Keyframes get their ids in the order of the messages that bring them.
+
+// The map begins with this view, which has depth. Answered at once.
+struct StartMap {
+  features::View view;
+  cv::Mat image;
+};
+
+// The map begins with two views of one camera; the image is the second one's. Answered when both
+// stand where a bundle put them.
+struct StartMapByMotion {
+  map::ViewPair views;
+  cv::Mat image;
+};
+
+// The view becomes a keyframe. Answered with the map in which it shows its landmarks.
+struct AddKeyframe {
+  map::TrackedView tracked;
+  cv::Mat image;  // empty: it was kept later than its frame; then no loop is looked for
+  std::vector<core::FramePose> frames;  // since the last AddKeyframe, its own the last of them
+};
+
+// Lost: which place of the whole map does the view show?
+struct FindPlace {
+  features::View view;
+  cv::Mat image;
+};
+
+// Nothing comes any more. Not answered.
+struct EndOfInput {
+  std::vector<core::FramePose> frames;  // since the last AddKeyframe
+};
+
+using ToMapping = std::variant<StartMap, StartMapByMotion, AddKeyframe, FindPlace, EndOfInput>;
+
+// Where somebody who was lost is.
+struct Place {
+  core::KeyframeId keyframe;
+  std::optional<core::Rigid3> keyframe_from_body;  // none: views without depth do not tell
+};
+
+// --- Mapping to tracking.
+struct MapAnswer {
+  scene::MapVersion map;
+  std::optional<Place> place;  // to FindPlace, if there is one
+};
+
+// --- Mapping to loop closing.
+
+// Does the keyframe show a place that was seen before? Answered once, maybe with nothing.
+struct FindLoops {
+  scene::MapVersion map;
+  core::KeyframeId keyframe;
+  cv::Mat image;  // empty: not looked for
+};
+
+using ToLoopClosing = std::variant<FindLoops, FindPlace>;
+
+// --- Loop closing to mapping.
+struct LoopAnswer {
+  std::vector<scene::LoopEdge> loops;          // accepted; their keyframes may be culled by now
+  std::optional<Place> place;                  // to FindPlace, if there is one
+  std::optional<core::Descriptor> descriptor;  // of a view that is remembered from now on
+  core::Ledger rows;                           // of all candidates that were judged
+};
+
+using MappingLink = core::Link<ToMapping, MapAnswer>;
+using LoopLink = core::Link<ToLoopClosing, LoopAnswer>;
+
+// What came since the map was kept last.
+struct MapNews {
+  std::vector<core::FramePose> frames;
+  std::vector<core::Descriptor> descriptors;
+  core::Ledger rows;
+};
+
+// Called by mapping, in its thread, once per keyframe and at the end, if there is a map.
+using KeepMap = std::function<void(const scene::MapVersion& map, const MapNews& news)>;
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,176 @@
+// Lost, in a map of one's own or of an earlier session.
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <opencv2/core/utility.hpp>
+
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/slam.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+constexpr double kSamePlace_m = 0.1;
+constexpr double kSamePlace_rad = 0.05;
+
+Config config_of(const std::string& source, int num_frames) {
+  cv::setNumThreads(1);
+  Config config;
+  config.source = source;
+  config.twin.num_frames = num_frames;
+  config.retrieve.window_frames = 75;
+  return config;
+}
+
+struct Walk {
+  std::vector<core::Frame> frames;
+  core::Trajectory truth;
+};
+
+Walk walk_of(const Config& config) {
+  const auto source = open_source(config);
+  Walk walk;
+  while (const auto frame = source->next()) walk.frames.push_back(*frame);
+  walk.truth = source->truth().trajectory;
+  return walk;
+}
+
+core::Frame with_id(core::Frame frame, std::size_t index, std::uint16_t session) {
+  frame.id = core::FrameId(index, session);
+  frame.stamp_s = static_cast<double>(index) / 15.0;
+  return frame;
+}
+
+scene::StoredMap stored(const Slam& slam) {
+  return {slam.map(), {.frames = slam.frames(), .descriptors = slam.descriptors()}};
+}
+
+// World poses of the frames of a Slam; lost ones have none.
+std::vector<std::optional<core::Rigid3>> poses_of(const Slam& slam) {
+  std::vector<std::optional<core::Rigid3>> poses;
+  for (const auto& frame : slam.frames()) {
+    poses.emplace_back();
+    if (frame.is_measured)
+      poses.back() =
+          world_from_body(slam.map(), frame.reference_keyframe) * frame.reference_from_frame;
+  }
+  return poses;
+}
+
+// Whether the pose is where the truth has it, in the world of the walk that began at truth[0].
+bool is_right(const core::Rigid3& world_from_body, const Walk& walk, std::size_t position) {
+  const core::Rigid3 truth =
+      inverse(walk.truth[0].world_from_camera) * walk.truth[position].world_from_camera;
+  const core::Rigid3 apart = inverse(truth) * world_from_body;
+  return apart.translation.norm() < kSamePlace_m &&
+         core::angle_rad(apart.rotation) < kSamePlace_rad;
+}
+
+TEST(Relocalisation, AWalkFindsItselfInItsOwnMapAndLeavesItAsItIs) {
+  const Config config = config_of("twin:office-loop?seed=7", 40);
+  const Walk walk = walk_of(config);
+  Slam first(config);
+  for (const auto& frame : walk.frames) first.feed(frame);
+  first.finish();
+
+  Slam second(config, stored(first), Slam::Use::kLocalize);
+  ASSERT_EQ(second.session(), 1);
+  // from the middle on, so that the place is not that of the first keyframe
+  for (std::size_t i = 20; i < walk.frames.size(); ++i)
+    second.feed(with_id(walk.frames[i], i - 20, 1));
+  second.finish();
+  const auto poses = poses_of(second);
+  int num_measured = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i]) continue;
+    ++num_measured;
+    EXPECT_TRUE(is_right(*poses[i], walk, 20 + i)) << "frame " << 20 + i;
+  }
+  EXPECT_GE(num_measured, 18) << "of 20";
+  EXPECT_EQ(second.map().number, first.map().number) << "the map stays as it is";
+  EXPECT_EQ(second.map().keyframes.size(), first.map().keyframes.size());
+}
+
+TEST(Relocalisation, ALaterSessionGrowsTheMapFromWhereItIsRecognised) {
+  const Config config = config_of("twin:office-loop?seed=7", 40);
+  const Walk walk = walk_of(config);
+  Slam first(config);
+  for (std::size_t i = 0; i < 20; ++i) first.feed(walk.frames[i]);
+  first.finish();
+  Slam second(config, stored(first), Slam::Use::kExtend);
+  for (std::size_t i = 10; i < walk.frames.size(); ++i)
+    second.feed(with_id(walk.frames[i], i - 10, 1));
+  second.finish();
+  EXPECT_EQ(second.frames()[0].status, core::FrameStatus::kResumed);
+  ASSERT_GT(second.map().keyframes.size(), first.map().keyframes.size());
+  EXPECT_EQ(second.map().keyframes.back().view.frame.session(), 1);
+  const auto poses = poses_of(second);
+  ASSERT_TRUE(poses.back().has_value());
+  EXPECT_TRUE(is_right(*poses.back(), walk, walk.frames.size() - 1)) << "in the first one's world";
+}
+
+TEST(Relocalisation, AnotherBuildingIsNotTakenForTheMap) {
+  const Config config = config_of("twin:office-loop?seed=7", 30);
+  const Walk walk = walk_of(config);
+  Slam first(config);
+  for (const auto& frame : walk.frames) first.feed(frame);
+  first.finish();
+  const Walk elsewhere = walk_of(config_of("twin:office-loop?seed=8", 30));
+  Slam second(config, stored(first), Slam::Use::kLocalize);
+  for (std::size_t i = 0; i < elsewhere.frames.size(); ++i)
+    second.feed(with_id(elsewhere.frames[i], i, 1));
+  second.finish();
+  for (const auto& frame : second.frames()) EXPECT_FALSE(frame.is_measured) << frame.frame;
+  EXPECT_FALSE(second.ledger().empty()) << "every look-alike was judged";
+}
+
+TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
+  const Config config = config_of("twin:office-loop?seed=7", 90);
+  const Walk walk = walk_of(config);
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < walk.frames.size(); ++i) positions.push_back(i);
+  for (std::size_t i = 0; i < 15; ++i) positions.push_back(i);  // back at the start at once
+  Slam slam(config);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    slam.feed(with_id(walk.frames[positions[i]], i, 0));
+  slam.finish();
+  const auto poses = poses_of(slam);
+  int num_measured = 0;
+  for (std::size_t i = walk.frames.size(); i < positions.size(); ++i) {
+    if (!poses[i]) continue;
+    ++num_measured;
+    EXPECT_TRUE(is_right(*poses[i], walk, positions[i])) << "frame " << positions[i] << " again";
+  }
+  EXPECT_GE(num_measured, 12) << "of 15";
+}
+
+TEST(Relocalisation, WithoutDepthWhoIsKidnappedResumesWhereHeWas) {
+  constexpr std::size_t kFirst = 40;
+  constexpr std::size_t kNumAgain = 10;
+  const Config config = config_of("twin:office-loop?seed=7&camera=mono", 90);
+  const Walk walk = walk_of(config);
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < walk.frames.size(); ++i) positions.push_back(i);
+  for (std::size_t i = 0; i < kNumAgain; ++i) positions.push_back(kFirst + i);
+  Slam slam(config, DepthFrom::kMotion);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    slam.feed(with_id(walk.frames[positions[i]], i, 0));
+  slam.finish();
+  const auto poses = poses_of(slam);
+  ASSERT_TRUE(poses[kFirst] && poses[walk.frames.size() - 1]);
+  const auto between = [&](std::size_t a, std::size_t b) { return inverse(*poses[a]) * *poses[b]; };
+  // no metres here; another place than his own would be off by much of the way that he was carried
+  const double way = between(kFirst, walk.frames.size() - 1).translation.norm();
+  int num_measured = 0;
+  for (std::size_t i = walk.frames.size(); i < positions.size(); ++i) {
+    if (!poses[i] || !poses[positions[i]]) continue;
+    ++num_measured;
+    EXPECT_LT(between(positions[i], i).translation.norm(), 0.1 * way) << "frame " << positions[i];
+    EXPECT_LT(core::angle_rad(between(positions[i], i).rotation), kSamePlace_rad);
+  }
+  EXPECT_GE(num_measured, 8) << "of " << kNumAgain;
+}
+
+}  // namespace
+}  // namespace samewhere::pipeline

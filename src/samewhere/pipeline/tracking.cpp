@@ -1,0 +1,284 @@
+#include <algorithm>
+#include <utility>
+
+#include <samewhere/features/orb.hpp>
+#include <samewhere/pipeline/tracking.hpp>
+#include <samewhere/track/drift_model.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+// The frame is its keyframe.
+core::FramePose starting_pose(const features::View& view, core::KeyframeId keyframe,
+                              int num_landmarks) {
+  return {.frame = view.frame,
+          .stamp_s = view.stamp_s,
+          .status = core::FrameStatus::kStarting,
+          .is_measured = true,
+          .reference_keyframe = keyframe,
+          .num_inliers = num_landmarks};
+}
+
+bool is_weak(const map::TrackedView& tracked) {
+  return tracked.pose.status == core::FrameStatus::kWeak;
+}
+
+}  // namespace
+
+Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapping)
+    : config_(config),
+      tracker_({config.track, config.features, config.optimize,
+                static_cast<std::uint64_t>(config.seed)}),
+      mapping_(mapping) {
+  if (depth_from == DepthFrom::kMotion) {
+    starter_.emplace(track::StartSettings{config.track.start, config.features,
+                                          static_cast<std::uint64_t>(config.seed)});
+  }
+}
+
+Tracking::Tracking(const Config& config, const scene::StoredMap& known, bool is_map_fixed,
+                   MappingLink& mapping)
+    : Tracking(config, DepthFrom::kSensor, mapping) {
+  map_ = known.map;
+  num_keyframes_ = map_.keyframes.size();
+  is_map_fixed_ = is_map_fixed;
+  std::uint16_t last_session = 0;
+  for (const auto& frame : known.extras.frames)
+    last_session = std::max(last_session, frame.frame.session());
+  session_ = static_cast<std::uint16_t>(last_session + 1);
+}
+
+void Tracking::feed(const core::Frame& frame) {
+  core::require(frame.id == core::FrameId(frames_.size(), session_),
+                "frames are numbered from 0, in the session that runs");
+  std::optional<map::TrackedView> tracked;
+  {
+    const core::ScopedTimer timer(timings_, "track");
+    if (under_way_ && under_way_->due_at_frame <= frames_.size()) see_kept();
+    const features::View view = features::extract(frame, config_.features);
+    tracked = locate(frame, view);
+    frames_.push_back(tracked ? tracked->pose
+                              : core::FramePose{.frame = view.frame, .stamp_s = view.stamp_s});
+  }
+  if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
+  if (map::is_worth_keeping(map_, *tracked, config_.map)) keep(*tracked, frame.images[0]);
+}
+
+void Tracking::finish() {
+  if (under_way_) see_kept();
+  mapping_.send(EndOfInput{unsent_frames()});
+}
+
+std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
+                                                 const features::View& view) {
+  if (map_.keyframes.empty()) return start(frame, view);
+  auto tracked = locate_in_map(view);
+  if (!tracked && !last_) tracked = relocalise(frame, view);
+  if (tracked) {
+    follow(*tracked);
+    remember(*tracked);
+  } else {
+    last_.reset();
+  }
+  return tracked;
+}
+
+std::optional<map::TrackedView> Tracking::locate_in_map(const features::View& view) {
+  std::optional<map::TrackedView> best = track_from_last(view);
+  if ((!best || is_weak(*best)) && under_way_) {
+    see_kept();
+    try_again(view, best);
+  }
+  if ((!best || is_weak(*best)) && can_promote_last()) {
+    // the reference is too far away: what the last frame saw is nearer
+    keep(*last_, {});
+    see_kept();
+    try_again(view, best);
+  }
+  if (best && !last_) {
+    if (is_weak(*best)) return std::nullopt;  // who was lost does not trust a weak pose
+    best->pose.status = core::FrameStatus::kResumed;
+  }
+  return best;
+}
+
+std::optional<map::TrackedView> Tracking::track_from_last(const features::View& view) {
+  if (local_map_.size() == 0) return std::nullopt;  // nobody knows where to look
+  const auto track = last_ ? tracker_.track(view, local_map_, guessed_pose())
+                           : tracker_.track_anywhere(view, local_map_);
+  if (!track) return std::nullopt;
+  return tracked_view(view, *track);
+}
+
+void Tracking::try_again(const features::View& view, std::optional<map::TrackedView>& best) {
+  auto nearer = track_from_last(view);
+  if (nearer && (!best || nearer->pose.num_inliers > best->pose.num_inliers))
+    best = std::move(nearer);
+}
+
+std::optional<map::TrackedView> Tracking::relocalise(const core::Frame& frame,
+                                                     const features::View& view) {
+  mapping_.send(FindPlace{view, frame.images[0]});
+  MapAnswer answer = wait_for_mapping();
+  const bool has_changed = answer.map.number != map_.number;
+  map_ = std::move(answer.map);
+  if (has_changed && local_map_.size() > 0)
+    look_around(holder_of(map_, local_map_.reference).keyframe);
+  if (!answer.place) return std::nullopt;
+  const auto& [keyframe, keyframe_from_body] = *answer.place;
+  const scene::Holder match = holder_of(map_, keyframe);
+  const scene::LocalMap around =
+      scene::build_local_map(map_, match.keyframe, config_.map.max_neighbours);
+  const auto track =
+      keyframe_from_body
+          ? tracker_.track(view, around, match.holder_from_keyframe * *keyframe_from_body)
+          : tracker_.track_anywhere(view, around);
+  if (!track || track->pose.status == core::FrameStatus::kWeak) return std::nullopt;
+  local_map_ = around;
+  map::TrackedView tracked = tracked_view(view, *track);
+  tracked.pose.status = core::FrameStatus::kResumed;
+  return tracked;
+}
+
+void Tracking::follow(map::TrackedView& tracked) {
+  std::map<core::KeyframeId, int> num_shown;
+  for (const auto& [feature, landmark] : tracked.landmarks) {
+    const scene::Landmark& shown = survivor_of(map_, landmark);
+    if (!is_live(shown)) continue;
+    for (const auto& observation : shown.observations) ++num_shown[observation.keyframe];
+  }
+  const auto most =
+      std::max_element(num_shown.begin(), num_shown.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == num_shown.end()) return;
+  if (most->first != local_map_.reference) look_around(most->first);
+  core::FramePose& pose = tracked.pose;
+  if (most->first == pose.reference_keyframe) return;
+  const core::Rigid3 world_from_frame = world_from(pose);
+  pose.reference_keyframe = most->first;
+  pose.reference_from_frame = inverse(world_from_body(map_, most->first)) * world_from_frame;
+  pose.information = track::odometry_information(
+      pose.reference_from_frame, pose.status == core::FrameStatus::kWeak, config_.track.drift);
+}
+
+// The last step once more, relative to the reference of the local map.
+core::Rigid3 Tracking::guessed_pose() const {
+  return inverse(world_from_body(map_, local_map_.reference)) * world_from(last_->pose) *
+         last_from_next_;
+}
+
+void Tracking::remember(const map::TrackedView& tracked) {
+  last_from_next_ =
+      last_ ? inverse(world_from(last_->pose)) * world_from(tracked.pose) : core::Rigid3{};
+  last_ = tracked;
+}
+
+std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
+                                                const features::View& view) {
+  if (starter_) return start_by_motion(frame, view);
+  if (!map::can_start(view, config_.map)) return std::nullopt;
+  mapping_.send(StartMap{view, frame.images[0]});
+  begin_tracking(view, map::num_with_depth(view));
+  return last_;
+}
+
+std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& frame,
+                                                          const features::View& view) {
+  auto started = starter_->offer(view);
+  if (!started) return std::nullopt;
+  const track::Start& start = started->start;
+  mapping_.send(StartMapByMotion{
+      {started->first, view, start.first_from_second, start.matches, start.points_in_first},
+      frame.images[0]});
+  const auto num_landmarks = static_cast<int>(start.matches.size());
+  begin_tracking(view, num_landmarks);
+  const scene::Keyframe& first = map_.keyframes[0];
+  keyframe_of_[first.view.frame] = first.id;
+  frames_[first.view.frame.index()] = starting_pose(first.view, first.id, num_landmarks);
+  locate_passed(started->between);
+  return last_;
+}
+
+void Tracking::locate_passed(const std::vector<features::View>& views) {
+  core::Rigid3 reference_from_body = inverse(map_.keyframes.back().world_from_body);
+  for (const auto& view : views) {
+    const auto track = tracker_.track(view, local_map_, reference_from_body);
+    if (!track) continue;
+    reference_from_body = track->pose.reference_from_frame;
+    core::FramePose& pose = frames_[view.frame.index()];
+    pose = track->pose;
+    pose.status = core::FrameStatus::kStarting;
+  }
+}
+
+// The view is the newest keyframe of the map that mapping begins.
+void Tracking::begin_tracking(const features::View& view, int num_landmarks) {
+  map_ = wait_for_mapping().map;
+  num_keyframes_ = map_.keyframes.size();
+  const core::KeyframeId newest = map_.keyframes.back().id;
+  keyframe_of_[view.frame] = newest;
+  look_around(newest);
+  last_ = map::TrackedView{view, starting_pose(view, newest, num_landmarks), {}};
+}
+
+bool Tracking::can_promote_last() const {
+  return !is_map_fixed_ && last_ && !is_kept(*last_) &&
+         map::can_keep(map_, last_->view, config_.map);
+}
+
+void Tracking::keep(const map::TrackedView& tracked, const cv::Mat& image) {
+  core::FramePose& pose = frames_.back();
+  core::require(pose.frame == tracked.view.frame, "the frame that is kept is the last one");
+  const core::KeyframeId added(num_keyframes_++);
+  keyframe_of_[pose.frame] = added;
+  // from now on the frame is where its keyframe is, wherever a loop moves it
+  pose.reference_keyframe = added;
+  pose.reference_from_frame = core::Rigid3{};
+  const std::size_t position = frames_.size() - 1;
+  mapping_.send(AddKeyframe{tracked, image, unsent_frames()});
+  under_way_ = {added, position + static_cast<std::size_t>(config_.map.visible_after_frames)};
+}
+
+void Tracking::see_kept() {
+  map_ = wait_for_mapping().map;
+  const core::KeyframeId kept = std::exchange(under_way_, std::nullopt)->keyframe;
+  look_around(kept);
+  if (last_ && last_->view.frame == map_.at(kept).view.frame) {
+    last_->pose.reference_keyframe = kept;
+    last_->pose.reference_from_frame = core::Rigid3{};
+  }
+}
+
+MapAnswer Tracking::wait_for_mapping() {
+  const core::ScopedTimer timer(timings_, "wait for mapping");
+  return mapping_.receive();
+}
+
+void Tracking::look_around(core::KeyframeId reference) {
+  local_map_ = scene::build_local_map(map_, reference, config_.map.max_neighbours);
+}
+
+bool Tracking::is_kept(const map::TrackedView& tracked) const {
+  return keyframe_of_.contains(tracked.view.frame);
+}
+
+core::Rigid3 Tracking::world_from(const core::FramePose& pose) const {
+  return world_from_body(map_, pose.reference_keyframe) * pose.reference_from_frame;
+}
+
+map::TrackedView Tracking::tracked_view(const features::View& view,
+                                        const track::Track& track) const {
+  map::TrackedView tracked{view, track.pose, {}};
+  for (const auto& match : track.matches) {
+    tracked.landmarks.emplace_back(match.second,
+                                   local_map_.landmarks[static_cast<std::size_t>(match.first)]);
+  }
+  return tracked;
+}
+
+std::vector<core::FramePose> Tracking::unsent_frames() {
+  const auto first = static_cast<std::ptrdiff_t>(std::exchange(num_sent_frames_, frames_.size()));
+  return {frames_.begin() + first, frames_.end()};
+}
+
+}  // namespace samewhere::pipeline

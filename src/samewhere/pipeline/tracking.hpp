@@ -1,0 +1,107 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <samewhere/core/frame.hpp>
+#include <samewhere/core/frame_pose.hpp>
+#include <samewhere/core/timing.hpp>
+#include <samewhere/map/mapper.hpp>
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/messages.hpp>
+#include <samewhere/scene/local_map.hpp>
+#include <samewhere/scene/map_file.hpp>
+#include <samewhere/track/starter.hpp>
+#include <samewhere/track/tracker.hpp>
+
+namespace samewhere::pipeline {
+
+// Where the depth of landmarks comes from. kMotion: one camera; the map starts from two views, and
+// its scale is free.
+enum class DepthFrom { kSensor, kMotion };
+
+// The first stage: where am I, and is this view worth keeping? Owns the pose of every frame. It
+// sees the map as mapping answered last; a new keyframe shows in it `map.visible_after_frames`
+// frames later, or at once if tracking is in trouble without it. At most one keyframe is under way.
+class Tracking {
+ public:
+  // `mapping` outlives this.
+  Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapping);
+  // In a map that is there: lost until a place is recognised. Fixed: no keyframe is added.
+  Tracking(const Config& config, const scene::StoredMap& known, bool is_map_fixed,
+           MappingLink& mapping);
+
+  // Frames are numbered from 0, in session(). Their pictures are shared: nobody writes to them.
+  std::uint16_t session() const { return session_; }
+  void feed(const core::Frame& frame);
+  void finish();
+
+  // One entry per frame fed.
+  const std::vector<core::FramePose>& frames() const { return frames_; }
+  bool is_keyframe(core::FrameId frame) const { return keyframe_of_.contains(frame); }
+  const core::Timings& timings() const { return timings_; }
+
+ private:
+  // Where am I? Nothing: lost.
+  std::optional<map::TrackedView> locate(const core::Frame& frame, const features::View& view);
+  std::optional<map::TrackedView> locate_in_map(const features::View& view);
+  std::optional<map::TrackedView> track_from_last(const features::View& view);
+  // The same again, if the map has got nearer; the better of both.
+  void try_again(const features::View& view, std::optional<map::TrackedView>& best);
+  // Lost: which place of the whole map is this? Then tracking must find a pose there that is not
+  // weak.
+  std::optional<map::TrackedView> relocalise(const core::Frame& frame, const features::View& view);
+  // The reference goes along with the camera: it is the keyframe that shows most of what the view
+  // shows, however old, and the local map is what lies around it.
+  void follow(map::TrackedView& tracked);
+  core::Rigid3 guessed_pose() const;
+  void remember(const map::TrackedView& tracked);
+
+  // The map begins. Nothing: not yet.
+  std::optional<map::TrackedView> start(const core::Frame& frame, const features::View& view);
+  // One camera: once a second view has parallax against an earlier one.
+  std::optional<map::TrackedView> start_by_motion(const core::Frame& frame,
+                                                  const features::View& view);
+  // Frames that were passed while the start was awaited: found in the map that it made.
+  void locate_passed(const std::vector<features::View>& views);
+  void begin_tracking(const features::View& view, int num_landmarks);
+
+  bool can_promote_last() const;
+  // The frame that was fed last becomes a keyframe. An empty image: its own is gone.
+  void keep(const map::TrackedView& tracked, const cv::Mat& image);
+  // The map that shows the keyframe under way; waits for it.
+  void see_kept();
+  MapAnswer wait_for_mapping();
+  void look_around(core::KeyframeId reference);
+
+  bool is_kept(const map::TrackedView& tracked) const;
+  core::Rigid3 world_from(const core::FramePose& pose) const;
+  map::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
+  std::vector<core::FramePose> unsent_frames();
+
+  Config config_;
+  core::Timings timings_;
+  track::Tracker tracker_;
+  std::optional<track::Starter> starter_;  // one camera
+  MappingLink& mapping_;
+
+  std::uint16_t session_ = 0;
+  bool is_map_fixed_ = false;
+  scene::MapVersion map_;  // as it is visible
+  scene::LocalMap local_map_;
+  std::uint64_t num_keyframes_ = 0;  // sent to mapping, or there before
+  std::map<core::FrameId, core::KeyframeId> keyframe_of_;
+  struct UnderWay {
+    core::KeyframeId keyframe;
+    std::size_t due_at_frame = 0;  // position
+  };
+  std::optional<UnderWay> under_way_;
+
+  std::vector<core::FramePose> frames_;
+  std::size_t num_sent_frames_ = 0;
+  std::optional<map::TrackedView> last_;  // the frame before, if it was located
+  core::Rigid3 last_from_next_;           // motion model: the last step once more
+};
+
+}  // namespace samewhere::pipeline
