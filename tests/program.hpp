@@ -31,4 +31,18 @@ inline Outcome run_program(const std::string& arguments, const std::filesystem::
 
 inline std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
+// The same, with Ctrl-C pressed as soon as `is_time`, a piece of shell, succeeds.
+inline Outcome interrupt_program(const std::string& arguments, const std::string& is_time,
+                                 const std::filesystem::path& scratch) {
+  const std::filesystem::path out = scratch / "stdout.txt";
+  const std::filesystem::path err = scratch / "stderr.txt";
+  // job control on: without it a shell's background process ignores SIGINT
+  core::write_file(scratch / "interrupt.sh",
+                   std::string("set -m\n'") + SAMEWHERE_PROGRAM + "' " + arguments + " >" +
+                       quoted(out) + " 2>" + quoted(err) + " </dev/null &\nuntil " + is_time +
+                       " >/dev/null 2>&1; do sleep 0.05; done\nkill -INT $!\nwait $!\n");
+  const int status = std::system(("timeout 240 bash " + quoted(scratch / "interrupt.sh")).c_str());
+  return {WEXITSTATUS(status), core::read_file(out), core::read_file(err)};
+}
+
 }  // namespace samewhere::test

@@ -21,7 +21,7 @@ TEST(Corridor, ALookalikeDoorIsNeverMistakenForAnotherAndTheTrueReturnTakesTheDr
   auto source = pipeline::open_source(config);
   const core::Truth truth = source->truth();
   const report::RunRecord record = pipeline::run_slam(std::move(source), config).record;
-  const auto evaluation = pipeline::evaluate_slam(pipeline::findings_of(record), truth);
+  const auto evaluation = pipeline::evaluate_slam(pipeline::findings_of(record, false), truth);
 
   EXPECT_EQ(evaluation.num_measured, evaluation.num_frames);
   EXPECT_EQ(evaluation.loops.num_wrong, 0);

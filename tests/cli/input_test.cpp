@@ -1,0 +1,101 @@
+// Checkerboards, videos and cameras on the command line.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/videoio.hpp>
+
+#include "program.hpp"
+#include <samewhere/geometry/test_board.hpp>
+#include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::test {
+namespace {
+
+using testing::HasSubstr;
+
+class InputCommands : public testing::Test {
+ protected:
+  Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
+  std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
+
+  void write_board(const std::string& name, const Eigen::Vector3d& turn_rad) const {
+    constexpr core::PinholeRadtan kCamera{.width_px = 320,
+                                          .height_px = 240,
+                                          .fx_px = 260.0,
+                                          .fy_px = 260.0,
+                                          .cx_px = 161.0,
+                                          .cy_px = 118.0,
+                                          .k1 = -0.1};
+    const core::Rigid3 middle_from_board{Eigen::Quaterniond::Identity(), {-0.06, -0.045, 0.0}};
+    const core::Rigid3 camera_from_middle{core::exp_so3(turn_rad), {0.0, 0.0, 0.24}};
+    folder_.write_png(name, geometry::render_board(kCamera, camera_from_middle * middle_from_board,
+                                                   {5, 4, 0.03}));
+  }
+
+  static void expect_one_line(const Outcome& outcome, const std::string& words) {
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+
+  input::TestFolder folder_;
+};
+
+TEST_F(InputCommands, CalibrateWritesTheCameraThatRunReads) {
+  const std::string rest = " --board 5x4 --square 0.03 --out " + quoted(path("camera.txt"));
+  const std::string calibrate = "calibrate " + quoted(path("boards")) + rest;
+  write_board("boards/1.png", {0.5, 0.0, 0.1});
+  write_board("boards/2.png", {-0.5, 0.1, 0.0});
+  folder_.write_png("boards/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
+  expect_one_line(run(calibrate), "5 x 4 inner corners in 2 pictures");
+  EXPECT_FALSE(std::filesystem::exists(path("camera.txt")));
+  write_board("boards/4.png", {0.1, 0.6, 0.0});
+  write_board("boards/5.png", {0.0, -0.6, 0.1});
+  const Outcome outcome = run(calibrate);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("no board in 1 of 5 pictures: 3.png"));
+  EXPECT_THAT(outcome.out, HasSubstr("4.png"));
+  const core::PinholeRadtan camera = input::read_camera_file(path("camera.txt"));
+  EXPECT_NEAR(camera.fx_px, 260.0, 2.6);
+  EXPECT_NEAR(camera.cx_px, 161.0, 2.0);
+  expect_one_line(
+      run("calibrate " + quoted(path("boards")) + " --board 5by4 --square 0.03 --out x"),
+      "--board 5by4: expected COLUMNSxROWS");
+}
+
+TEST_F(InputCommands, LoopsLooksThroughAVideo) {
+  cv::VideoWriter writer(path("walk.avi").string(), cv::CAP_OPENCV_MJPEG,
+                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, {64, 48});
+  for (int i = 0; i < 4; ++i) writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(60 * i)));
+  writer.release();
+  const std::string rest = " --set retrieve.window_frames=0 --out " + quoted(path("out"));
+  const Outcome outcome = run("loops " + quoted(path("walk.avi")) + rest);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(path("out/matches.txt")));
+  expect_one_line(run("loops " + quoted(path("walk.avi")) + rest + " --realtime"),
+                  "is a recording; --realtime is for a camera");
+}
+
+TEST_F(InputCommands, WhatIsNoVideoOrNoCameraIsOneLine) {
+  folder_.write("walk.mp4", "no video");
+  expect_one_line(run("loops " + quoted(path("walk.mp4"))), "walk.mp4: cannot be read as a video");
+  expect_one_line(run("run /dev/video977 --realtime"), "/dev/video977: does not exist");
+  expect_one_line(run("run /dev/null --realtime"), "/dev/null: cannot be opened as a camera");
+}
+
+TEST_F(InputCommands, AVideoWithoutThePluginIsOneLine) {
+  folder_.write("walk.mp4", "no video");
+  std::filesystem::copy_file(SAMEWHERE_PROGRAM, path("samewhere"));
+  const std::string lonely = "'" + path("samewhere").string() + "' loops " +
+                             quoted(path("walk.mp4")) + " 2>" + quoted(path("err.txt"));
+  const int status = std::system(lonely.c_str());
+  expect_one_line({WEXITSTATUS(status), "", core::read_file(path("err.txt"))},
+                  "samewhere-video.so: the plugin that reads videos and cameras cannot be loaded");
+}
+
+}  // namespace
+}  // namespace samewhere::test

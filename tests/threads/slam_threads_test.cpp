@@ -1,0 +1,243 @@
+// SLAM on three threads finds to the bit what it finds in turn, and ends well. Small enough for the
+// sanitizers: nothing is rendered, a camera goes along a painted wall and back.
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <unistd.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/core/random.hpp>
+#include <samewhere/core/tum_file.hpp>
+#include <samewhere/pipeline/map_saver.hpp>
+#include <samewhere/pipeline/slam.hpp>
+#include <samewhere/report/loops.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+constexpr int kWidth_px = 240;
+constexpr int kHeight_px = 180;
+constexpr int kStep_px = 12;
+constexpr std::uint64_t kNumFrames = 32;
+// In the second of them nobody knows any more where the camera was: the whole map is searched.
+constexpr std::uint64_t kFirstBlackFrame = 21;
+constexpr std::uint64_t kLastBlackFrame = 22;
+
+// Small pictures, and a window so short that loops close, even between views that the map holds
+// together anyway.
+Config config_of(bool in_threads) {
+  cv::setNumThreads(1);
+  Config config;
+  config.threads = in_threads;
+  config.features.num_features = 300;
+  config.map.min_tracked = 60;
+  config.retrieve.window_frames = 4;
+  config.map.min_shared = 1000;
+  return config;
+}
+
+std::shared_ptr<const core::Rig> rig() {
+  core::Rig rig;
+  rig.cameras.push_back(core::PinholeRadtan{.width_px = kWidth_px,
+                                            .height_px = kHeight_px,
+                                            .fx_px = 200.0,
+                                            .fy_px = 200.0,
+                                            .cx_px = 0.5 * (kWidth_px - 1),
+                                            .cy_px = 0.5 * (kHeight_px - 1)});
+  rig.body_from_camera.emplace_back();
+  return std::make_shared<const core::Rig>(rig);
+}
+
+cv::Mat painted_wall() {
+  core::Random random(3);
+  cv::Mat wall(kHeight_px, kWidth_px + kStep_px * static_cast<int>(kNumFrames), CV_8UC3,
+               cv::Scalar::all(128));
+  for (int i = 0; i < 2000; ++i) {
+    const cv::Point corner(static_cast<int>(random.index(static_cast<std::uint64_t>(wall.cols))),
+                           static_cast<int>(random.index(kHeight_px)));
+    const cv::Size size(4 + static_cast<int>(random.index(16)),
+                        4 + static_cast<int>(random.index(16)));
+    wall(cv::Rect(corner, size) & cv::Rect({}, wall.size()))
+        .setTo(cv::Scalar::all(static_cast<double>(random.index(256))));
+  }
+  return wall;
+}
+
+// Along the wall, 2 m away from it, and back; for two frames somebody covers the lens.
+std::vector<core::Frame> walk() {
+  const cv::Mat wall = painted_wall();
+  const auto shared_rig = rig();
+  std::vector<core::Frame> frames;
+  for (std::uint64_t i = 0; i < kNumFrames; ++i) {
+    const auto position = static_cast<int>(std::min(i, kNumFrames - i));
+    core::Frame frame{.id = core::FrameId(i), .stamp_s = 0.1 * static_cast<double>(i)};
+    frame.rig = shared_rig;
+    frame.images.push_back(wall(cv::Rect(position * kStep_px, 0, kWidth_px, kHeight_px)).clone());
+    if (i >= kFirstBlackFrame && i <= kLastBlackFrame) frame.images[0].setTo(0);
+    frame.depth_m = cv::Mat(kHeight_px, kWidth_px, CV_32F, cv::Scalar(2.0));
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+// All that a run found, as the bytes that are written.
+struct Found {
+  std::string trajectory;
+  std::string loops;
+  std::string map;  // the file
+  std::size_t num_loops = 0;
+  std::size_t num_keyframes = 0;
+  std::ptrdiff_t num_searches = 0;  // views of the map that the lost frame was compared with
+};
+
+Found found_by(const std::vector<core::Frame>& frames, const Config& config,
+               const core::Dawdle& dawdle = {}) {
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    ("samewhere_slam_threads_" + std::to_string(getpid()) + ".sw");
+  std::filesystem::remove(path);
+  std::optional<MapSaver> saver;
+  Slam slam(config, DepthFrom::kSensor,
+            {.keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
+             .dawdle = dawdle});
+  saver.emplace(path, config, slam.describer_checksum());
+  for (const auto& frame : frames) slam.feed(frame);
+  slam.finish();
+  EXPECT_FALSE(saver->error()) << *saver->error();
+  saver.reset();
+  std::ostringstream trajectory;
+  trajectory << core::tum_text(trajectory_of(slam.map(), slam.frames()));
+  Found found{trajectory.str(),
+              report::loops_json(slam.ledger()),
+              core::read_file(path),
+              slam.map().loops.size(),
+              slam.map().keyframes.size(),
+              std::count_if(slam.ledger().begin(), slam.ledger().end(), [](const auto& row) {
+                return row.candidate.query == core::FrameId(kLastBlackFrame);
+              })};
+  std::filesystem::remove(path);
+  return found;
+}
+
+void expect_same(const Found& found, const Found& expected, const std::string& how) {
+  EXPECT_EQ(found.trajectory, expected.trajectory) << how;
+  EXPECT_EQ(found.loops, expected.loops) << how;
+  EXPECT_TRUE(found.map == expected.map) << how << ": the map files differ";
+}
+
+// Sleeps for up to 30 ms, each message as long as the seed wants it.
+core::Dawdle asleep(std::uint64_t seed) {
+  return [seed](std::uint64_t number) {
+    core::Random random(core::seed_of(seed, "dawdle", number));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random.index(31)));
+  };
+}
+
+// Threads that do nothing but take the processors away.
+class Load {
+ public:
+  explicit Load(int num_threads) {
+    for (int i = 0; i < num_threads; ++i) {
+      threads_.emplace_back([this] {
+        while (!is_over_) {
+        }
+      });
+    }
+  }
+  Load(const Load&) = delete;
+  Load& operator=(const Load&) = delete;
+  ~Load() {
+    is_over_ = true;
+    for (auto& thread : threads_) thread.join();
+  }
+
+ private:
+  std::atomic<bool> is_over_ = false;
+  std::deque<std::thread> threads_;
+};
+
+TEST(SlamThreads, FindToTheByteWhatOneThreadFindsHoweverTheyDawdle) {
+  const std::vector<core::Frame> frames = walk();
+  const Found in_turn = found_by(frames, config_of(false));
+  EXPECT_GT(in_turn.num_loops, 0U) << "without a correction this shows little";
+  EXPECT_GT(in_turn.num_keyframes, 5U);
+  EXPECT_GT(in_turn.num_searches, 0) << "nobody was lost";
+  expect_same(found_by(frames, config_of(false)), in_turn, "in turn, once more");
+  expect_same(found_by(frames, config_of(true)), in_turn, "in threads");
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    expect_same(found_by(frames, config_of(true), asleep(seed)), in_turn,
+                "asleep, seed " + std::to_string(seed));
+  }
+  const Load load(4);
+  expect_same(found_by(frames, config_of(true)), in_turn, "under load");
+  expect_same(found_by(frames, config_of(true), asleep(9)), in_turn, "under load and asleep");
+}
+
+TEST(SlamThreads, LagAndDelayChangeTheResultButNotWithTheThreads) {
+  const std::vector<core::Frame> frames = walk();
+  Config in_turn = config_of(false);
+  in_turn.map.visible_after_frames = 5;
+  in_turn.map.loop_lag_keyframes = 3;
+  Config in_threads = in_turn;
+  in_threads.threads = true;
+  const Found expected = found_by(frames, in_turn);
+  EXPECT_NE(expected.trajectory, found_by(frames, config_of(false)).trajectory);
+  expect_same(found_by(frames, in_threads, asleep(1)), expected, "asleep");
+}
+
+void run_to_the_end(const std::vector<core::Frame>& frames, const SlamHooks& hooks) {
+  Slam slam(config_of(true), DepthFrom::kSensor, hooks);
+  for (const auto& frame : frames) slam.feed(frame);
+  slam.finish();
+}
+
+TEST(SlamThreads, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
+  const std::vector<core::Frame> frames = walk();
+  for (const int num_kept : {0, 1, 4}) {
+    int count = 0;
+    const KeepMap fail = [&](const scene::MapVersion&, const MapNews&) {
+      if (count++ == num_kept) throw core::InputError("no room on the disk");
+    };
+    EXPECT_THROW(run_to_the_end(frames, {.keep_map = fail}), core::InputError) << num_kept;
+  }
+  Slam broken(config_of(false), DepthFrom::kSensor,
+              {.keep_map = [](const auto&, const auto&) { throw core::InputError("no room"); },
+               .dawdle = {}});
+  EXPECT_THROW(broken.feed(frames[0]), core::InputError);
+  EXPECT_THROW(broken.feed(frames[1]), core::ContractError) << "after an error nothing follows";
+  // message by message, in mapping or in loop closing
+  for (const std::uint64_t last : {0, 1, 2, 3, 8}) {
+    const core::Dawdle fail = [last](std::uint64_t number) {
+      if (number == last) throw std::runtime_error("broken");
+    };
+    EXPECT_THROW(run_to_the_end(frames, {.dawdle = fail}), std::runtime_error) << last;
+  }
+}
+
+TEST(SlamThreads, DestructionInTheMiddleOfItsWorkEnds) {
+  const std::vector<core::Frame> frames = walk();
+  for (const std::size_t num_frames : {0, 1, 2, 7, 20}) {
+    Slam slam(config_of(true), DepthFrom::kSensor, {.dawdle = asleep(num_frames)});
+    for (std::size_t i = 0; i < num_frames; ++i) slam.feed(frames[i]);
+  }
+}
+
+TEST(SlamThreads, WhatStagesOwnIsLookedAtWhenTheyHaveEnded) {
+  Slam slam(config_of(true));
+  EXPECT_THROW(slam.map(), core::ContractError);
+  slam.finish();
+  EXPECT_TRUE(slam.map().keyframes.empty());
+  EXPECT_TRUE(slam.ledger().empty());
+  EXPECT_THROW(slam.finish(), core::ContractError);
+}
+
+}  // namespace
+}  // namespace samewhere::pipeline
