@@ -17,9 +17,9 @@
 #include "program.hpp"
 #include "view_pairs.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/grey.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/features/orb.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/twin/spec.hpp>
 
@@ -88,7 +88,7 @@ void add_view(const core::Frame& frame, const core::Trajectory& trajectory, cons
   const auto world_from_camera = evaluate::truth_at(trajectory, frame.stamp_s);
   if (!world_from_camera || !frame.depth_m || !frame.rig || !frame.rig->is_calibrated()) return;
   views.geometry.push_back(view_geometry(frame, *world_from_camera));
-  views.orb.push_back(extract_orb(features::as_grey(picture), kOrbFeatures));
+  views.orb.push_back(extract_orb(core::as_grey(picture), kOrbFeatures));
 }
 
 Views look_at(const std::string& name, const Options& options) {

@@ -17,9 +17,10 @@
 #include "program.hpp"
 #include "whole_view.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/grey.hpp>
+#include <samewhere/core/median.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/describe/describer.hpp>
-#include <samewhere/features/orb.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 
 namespace samewhere::bench {
@@ -63,7 +64,7 @@ SourceViews view(const std::string& name, MobileNet& mobilenet) {
     const cv::Mat& image = frame->images.front();
     views.known.names.push_back(frame->name);
     views.known.stamps_s.push_back(frame->stamp_s);
-    views.orb.push_back(extract_orb(features::as_grey(image), kOrbFeatures));
+    views.orb.push_back(extract_orb(core::as_grey(image), kOrbFeatures));
     views.mobilenet.push_back(mobilenet.describe(as_bgr(image)));
     views.hog.push_back(describer->describe(frame->id, image).unit);
     progress.update(static_cast<int>(views.orb.size()));
@@ -136,10 +137,8 @@ std::string share_at_least(int gate, const std::vector<int>& best) {
 }
 
 std::string median_of(std::vector<int> best) {
-  if (best.empty()) return "-";
-  const auto middle = best.begin() + static_cast<std::ptrdiff_t>(best.size() / 2);
-  std::nth_element(best.begin(), middle, best.end());
-  return std::to_string(*middle);
+  const auto median = core::median(std::move(best));
+  return median ? std::to_string(*median) : "-";
 }
 
 void measure(const std::string& name, const Options& options, MobileNet& mobilenet, Table& table) {

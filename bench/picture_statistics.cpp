@@ -10,7 +10,7 @@
 
 #include "orb_matches.hpp"
 #include <samewhere/core/errors.hpp>
-#include <samewhere/features/orb.hpp>
+#include <samewhere/core/grey.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -175,7 +175,7 @@ double spectrum_slope(const cv::Mat& grey, double min_frequency, double max_freq
 PictureStatistics picture_statistics(const cv::Mat& image) {
   core::require(std::min(image.cols, image.rows) >= kMinSide_px,
                 "a picture to be measured has at least 64 pixels a side");
-  const cv::Mat grey = features::as_grey(image);
+  const cv::Mat grey = core::as_grey(image);
   PictureStatistics statistics;
   add_corners(grey, statistics);
   add_tones(grey, statistics);

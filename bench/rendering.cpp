@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "program.hpp"
+#include <samewhere/core/grey.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/twin/twin.hpp>
 
@@ -43,8 +44,7 @@ std::vector<std::string> measure(const std::string& spec, const Options& options
   while ((frame = source->next())) {
     ++num_frames;
     if (num_frames % 10 != 0) continue;  // looking takes its time, too
-    cv::Mat grey;
-    cv::cvtColor(frame->images.front(), grey, cv::COLOR_BGR2GRAY);
+    const cv::Mat grey = core::as_grey(frame->images.front());
     std::vector<cv::KeyPoint> corners;
     cv::FAST(grey, corners, kFastThreshold);
     num_corners += static_cast<double>(corners.size());

@@ -14,6 +14,8 @@
 
 #include "carried_pixels.hpp"
 #include "program.hpp"
+#include <samewhere/core/grey.hpp>
+#include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/inertial.hpp>
@@ -25,13 +27,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Shift of the second picture's patch over the first's, by phase correlation; nothing if the patch
 // holds too little to tell.
@@ -113,11 +108,9 @@ Reprojection reprojection(const twin::Walkthrough& walk) {
   const core::Camera& camera = walk.rig()->cameras.front();
   const auto shot = [&](int index) {
     const twin::Pictures pictures = studio.pictures(index);
-    Shot taken{.grey = {},
-               .view = {*pictures.depth_m,
-                        walk.walk().poses[static_cast<std::size_t>(index)].world_from_camera}};
-    cv::cvtColor(pictures.images.front(), taken.grey, cv::COLOR_BGR2GRAY);
-    return taken;
+    return Shot{.grey = core::as_grey(pictures.images.front()),
+                .view = {*pictures.depth_m,
+                         walk.walk().poses[static_cast<std::size_t>(index)].world_from_camera}};
   };
   core::Random random(core::seed_of(walk.spec().seed, "bench.truth", 0));
   Reprojection found;
@@ -138,7 +131,8 @@ std::string depth_agreement(const std::vector<double>& residuals) {
       std::count_if(residuals.begin(), residuals.end(), [](double r) { return r <= 0.01; });
   const double share = static_cast<double>(num_small) /
                        static_cast<double>(std::max<std::size_t>(1, residuals.size()));
-  return fmt::format("{:.1f} %, {:.4f} %", 100.0 * share, 100.0 * median(residuals));
+  return fmt::format("{:.1f} %, {:.4f} %", 100.0 * share,
+                     100.0 * core::median(residuals).value_or(0.0));
 }
 
 struct InertialCheck {
@@ -240,7 +234,7 @@ std::vector<std::string> check(const std::string& text) {
   return {text,
           std::to_string(walk.num_frames()),
           depth_agreement(errors.depth_residuals),
-          fmt::format("{:.3f}", median(errors.picture_shifts_px)),
+          fmt::format("{:.3f}", core::median(errors.picture_shifts_px).value_or(0.0)),
           std::to_string(errors.picture_shifts_px.size()),
           fmt::format("{:.2f}", inertial.mean_chi_square),
           fmt::format("{:.1f} %", 100.0 * inertial.share_within_3_sigma),

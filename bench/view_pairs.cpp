@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/geometry/camera.hpp>
 
@@ -20,12 +21,6 @@ constexpr double kDepthToleranceRatio = 0.04;
 constexpr double kMinOverlap = 0.3;
 constexpr int kDrawsPerPair = 20;
 constexpr std::uint64_t kSeed = 0;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
@@ -62,7 +57,7 @@ void add_points(ViewGeometry& view) {
       depths_m.push_back(depth_m);
     }
   }
-  if (!depths_m.empty()) view.median_depth_m = median(depths_m);
+  view.median_depth_m = core::median(depths_m).value_or(0.0);
 }
 
 // Index of the interval that holds the value, or -1.
@@ -139,7 +134,7 @@ SharedView shared_view(const ViewGeometry& first, const ViewGeometry& second) {
   }
   if (parallaxes_deg.empty()) return {};
   return {.overlap = static_cast<double>(parallaxes_deg.size()) / num_known,
-          .parallax_deg = median(parallaxes_deg)};
+          .parallax_deg = core::median(parallaxes_deg).value_or(0.0)};
 }
 
 bool goes(Way way, const ViewGeometry& first, const ViewGeometry& second) {
