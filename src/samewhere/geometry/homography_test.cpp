@@ -81,8 +81,8 @@ TEST(Homography, OneOfItsMotionsIsTheTrueOneWithTheTruePlane) {
 }
 
 TEST(Homography, ThatOfARotationHasNoMotions) {
-  const Homography turn{core::exp_so3({0.1, 0.2, -0.1}).toRotationMatrix(), {}};
-  EXPECT_TRUE(motions_of(turn).empty());
+  const Eigen::Matrix3d rotation = core::exp_so3({0.1, 0.2, -0.1}).toRotationMatrix();
+  EXPECT_TRUE(motions_of({rotation, rotation.transpose()}).empty());
 }
 
 }  // namespace
