@@ -2,183 +2,47 @@
 #include <cmath>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/optimize/bundle.hpp>
-#include <samewhere/optimize/pose_block.hpp>
+#include <samewhere/optimize/schur.hpp>
 
 namespace samewhere::optimize {
 namespace {
 
-constexpr std::size_t kPoseSize = 7;
-constexpr std::size_t kPointSize = 3;
-constexpr std::ptrdiff_t kMaxDenseCameras = 60;  // beyond, the Schur complement is mostly zeros
+constexpr std::ptrdiff_t kMaxDenseCameras = 60;  // beyond, the reduced system is mostly zeros
 
-// Size 2 without depth, 3 with.
-template <int Size>
-class ReprojectionCost : public ceres::SizedCostFunction<Size, kPoseSize, kPointSize> {
- public:
-  ReprojectionCost(const BundleCamera& camera, const SeenAt& seen) : camera_(camera), seen_(seen) {}
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const BundleResidual r = bundle_residual(camera_, from_block(blocks[0]),
-                                             Eigen::Map<const Eigen::Vector3d>(blocks[1]), seen_);
-    if (r.reprojection.size == 0) return false;  // a step that takes a point behind a camera
-    Eigen::Map<Eigen::Matrix<double, Size, 1>>{residuals} = r.reprojection.value.head<Size>();
-    if (jacobians == nullptr) return true;
-    write_by_tangent<Size>(r.by_pose.topRows<Size>(), jacobians[0]);
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, Size, 3, Eigen::RowMajor>>{jacobians[1]} =
-          r.by_point.topRows<Size>();
-    }
-    return true;
-  }
-
- private:
-  const BundleCamera& camera_;  // of the problem, which outlives the solver
-  const SeenAt& seen_;
-};
-
-bool has_depth(const BundleObservation& observation) {
-  return std::isfinite(observation.seen.right_x_px);
+BundleResidual residual(const BundleState& state, const BundleObservation& o) {
+  const auto camera = static_cast<std::size_t>(o.camera);
+  return bundle_residual(state.problem->cameras[camera], state.camera_from_world[camera],
+                         state.points_in_world[static_cast<std::size_t>(o.point)], o.seen);
 }
 
-// One bundle while it is solved. All parameter blocks lie in one array, poses before points, so
-// that their order, and with it every sum, is the same in each run.
-class Bundle {
- public:
-  explicit Bundle(const BundleProblem& problem) : problem_(problem) {
-    for (const auto& camera : problem.cameras) {
-      const PoseBlock block = to_block(camera.camera_from_world);
-      parameters_.insert(parameters_.end(), block.begin(), block.end());
-    }
-    for (const auto& point : problem.points_in_world)
-      parameters_.insert(parameters_.end(), point.data(), point.data() + kPointSize);
-    sort_inliers();
-    // at first only what has no reprojection at all is out: poses are still wrong
-    for (std::size_t i = 0; i < problem.observations.size(); ++i)
-      is_used_[i] = residual(i).reprojection.size > 0;
-  }
-
-  void use_inliers() {
-    sort_inliers();
-    is_used_ = result_.is_inlier;
-  }
-
-  void solve(bool is_robust, int max_iterations);
-
-  BundleResult result() {
-    sort_inliers();
-    for (std::size_t i = 0; i < problem_.cameras.size(); ++i) {
-      const bool is_fixed = problem_.cameras[i].is_fixed;
-      result_.camera_from_world.push_back(is_fixed ? problem_.cameras[i].camera_from_world
-                                                   : from_block(pose(i)));
-    }
-    for (std::size_t i = 0; i < problem_.points_in_world.size(); ++i)
-      result_.points_in_world.emplace_back(Eigen::Map<const Eigen::Vector3d>(point(i)));
-    return result_;
-  }
-
- private:
-  double* pose(std::size_t camera) { return &parameters_[kPoseSize * camera]; }
-  double* point(std::size_t i) {
-    return &parameters_[kPoseSize * problem_.cameras.size() + kPointSize * i];
-  }
-
-  BundleResidual residual(std::size_t i) {
-    const BundleObservation& o = problem_.observations[i];
-    const auto camera = static_cast<std::size_t>(o.camera);
-    const Eigen::Map<const Eigen::Vector3d> where(point(static_cast<std::size_t>(o.point)));
-    return bundle_residual(problem_.cameras[camera], from_block(pose(camera)), where, o.seen);
-  }
-
-  void sort_inliers() {
-    const std::size_t n = problem_.observations.size();
-    result_.is_inlier.resize(n);
-    is_used_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) result_.is_inlier[i] = is_inlier(residual(i).reprojection);
-  }
-
-  // Points whose used observations fix them: one with depth, or two.
-  std::vector<bool> supported_points() const {
-    std::vector<int> support(problem_.points_in_world.size(), 0);
-    for (std::size_t i = 0; i < problem_.observations.size(); ++i) {
-      const BundleObservation& o = problem_.observations[i];
-      if (is_used_[i]) support[static_cast<std::size_t>(o.point)] += has_depth(o) ? 2 : 1;
-    }
-    std::vector<bool> is_supported;
-    for (const int n : support) is_supported.push_back(n >= 2);
-    return is_supported;
-  }
-
-  void add_observations(ceres::Problem& problem, bool is_robust);
-
-  const BundleProblem& problem_;
-  std::vector<double> parameters_;
-  std::vector<bool> is_used_;  // one per observation
-  BundleResult result_;
-  PoseManifold manifold_;
-  ceres::HuberLoss huber_2_{std::sqrt(kChiSquare95[2])};
-  ceres::HuberLoss huber_3_{std::sqrt(kChiSquare95[3])};
-};
-
-void Bundle::add_observations(ceres::Problem& problem, bool is_robust) {
-  const std::vector<bool> is_supported = supported_points();
-  for (std::size_t i = 0; i < problem_.observations.size(); ++i) {
-    const BundleObservation& o = problem_.observations[i];
-    const auto camera = static_cast<std::size_t>(o.camera);
-    const auto seen_point = static_cast<std::size_t>(o.point);
-    if (!is_used_[i] || !is_supported[seen_point]) continue;
-    const BundleCamera& from = problem_.cameras[camera];
-    ceres::CostFunction* cost = nullptr;
-    if (has_depth(o)) {
-      cost = new ReprojectionCost<3>(from, o.seen);
-    } else {
-      cost = new ReprojectionCost<2>(from, o.seen);
-    }
-    ceres::LossFunction* loss = has_depth(o) ? &huber_3_ : &huber_2_;
-    problem.AddResidualBlock(cost, is_robust ? loss : nullptr, pose(camera), point(seen_point));
-  }
+std::vector<bool> inliers(const BundleState& state) {
+  std::vector<bool> are_inliers;
+  for (const auto& o : state.problem->observations)
+    are_inliers.push_back(is_inlier(residual(state, o).reprojection));
+  return are_inliers;
 }
 
-// One thread and Eigen's solvers, as for the pose graph; see there.
-ceres::Solver::Options solver_options(int max_iterations, std::ptrdiff_t num_free_cameras) {
-  ceres::Solver::Options options;
-  options.linear_solver_type =
-      num_free_cameras <= kMaxDenseCameras ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  options.dense_linear_algebra_library_type = ceres::EIGEN;
-  options.num_threads = 1;
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-5;
-  options.logging_type = ceres::SILENT;
-  return options;
+// What has any reprojection: at first nothing else is out, since poses are still wrong.
+std::vector<bool> visible(const BundleState& state) {
+  std::vector<bool> are_visible;
+  for (const auto& o : state.problem->observations)
+    are_visible.push_back(residual(state, o).reprojection.size > 0);
+  return are_visible;
 }
 
-void Bundle::solve(bool is_robust, int max_iterations) {
-  ceres::Problem::Options ownership;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(ownership);
-  const auto& cameras = problem_.cameras;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    problem.AddParameterBlock(pose(i), kPoseSize, &manifold_);
-    if (cameras[i].is_fixed) problem.SetParameterBlockConstant(pose(i));
+// Leaves out the points that the used observations do not fix: it takes one with depth, or two.
+std::vector<bool> of_supported_points(const BundleProblem& problem, std::vector<bool> is_used) {
+  std::vector<int> support(problem.points_in_world.size(), 0);
+  const auto& observations = problem.observations;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (!is_used[i]) continue;
+    const bool has_depth = std::isfinite(observations[i].seen.right_x_px);
+    support[static_cast<std::size_t>(observations[i].point)] += has_depth ? 2 : 1;
   }
-  for (std::size_t i = 0; i < problem_.points_in_world.size(); ++i)
-    problem.AddParameterBlock(point(i), kPointSize);
-  add_observations(problem, is_robust);
-  if (problem.NumResidualBlocks() == 0) return;
-
-  const auto num_free = std::count_if(cameras.begin(), cameras.end(),
-                                      [](const BundleCamera& camera) { return !camera.is_fixed; });
-  ceres::Solver::Options options = solver_options(max_iterations, num_free);
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (std::size_t i = 0; i < problem_.points_in_world.size(); ++i)
-    ordering->AddElementToGroup(point(i), 0);
-  for (std::size_t i = 0; i < cameras.size(); ++i) ordering->AddElementToGroup(pose(i), 1);
-  options.linear_solver_ordering = ordering;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  result_.num_iterations += static_cast<int>(summary.iterations.size());
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (support[static_cast<std::size_t>(observations[i].point)] < 2) is_used[i] = false;
+  }
+  return is_used;
 }
 
 void check(const BundleProblem& problem) {
@@ -212,11 +76,22 @@ BundleResidual bundle_residual(const BundleCamera& camera, const core::Rigid3& c
 
 BundleResult solve_bundle(const BundleProblem& problem, const Config& config) {
   check(problem);
-  Bundle bundle(problem);
-  bundle.solve(true, config.bundle_iterations);
-  bundle.use_inliers();
-  bundle.solve(false, config.bundle_iterations);
-  return bundle.result();
+  BundleState state{&problem, {}, problem.points_in_world, {}};
+  for (const auto& camera : problem.cameras)
+    state.camera_from_world.push_back(camera.camera_from_world);
+  const auto num_free = std::count_if(problem.cameras.begin(), problem.cameras.end(),
+                                      [](const BundleCamera& camera) { return !camera.is_fixed; });
+  const auto minimise = num_free <= kMaxDenseCameras ? minimise_by_schur : minimise_by_ceres;
+
+  BundleResult result;
+  state.is_used = of_supported_points(problem, visible(state));
+  result.num_iterations += minimise(state, true, config.bundle_iterations);
+  state.is_used = of_supported_points(problem, inliers(state));
+  result.num_iterations += minimise(state, false, config.bundle_iterations);
+  result.is_inlier = inliers(state);
+  result.camera_from_world = std::move(state.camera_from_world);
+  result.points_in_world = std::move(state.points_in_world);
+  return result;
 }
 
 }  // namespace samewhere::optimize
