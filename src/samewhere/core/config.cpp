@@ -24,7 +24,7 @@ std::string range_text(const FieldInfo& info) {
   return "";
 }
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   YAML::Emitter out;
   out << YAML::DoubleQuoted << text;
   return out.c_str();
@@ -194,7 +194,7 @@ class Lister : public PathVisitor {
     line(name, number_text(field), info);
   }
   void value(std::string_view name, std::string& field, const FieldInfo& info) override {
-    line(name, quoted(field), info);
+    line(name, in_quotes(field), info);
   }
   void choice(std::string_view name, int& field, const FieldInfo& info) override {
     line(name, std::string(info.choices.at(static_cast<std::size_t>(field))), info);

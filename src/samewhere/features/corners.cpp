@@ -16,7 +16,7 @@ constexpr int kClearContrast = 20;  // FAST threshold that finds enough where th
 constexpr std::size_t kEnoughPerCell = 3;  // clear corners that make a second search needless
 constexpr int kSurePerCell = 2;      // corners that each part of the picture gives before others
 constexpr int kFastRadius_px = 3;    // of the circle that FAST looks at
-constexpr int kWindowRadius_px = 3;  // of the window that the structure tensor is summed over
+constexpr int kTensorRadius_px = 3;  // of the window that the structure tensor is summed over
 
 // The lanes of a row of the window: seven pixels, the eighth does not count.
 cv::v_int16x8 window_lanes() { return {-1, -1, -1, -1, -1, -1, -1, 0}; }
@@ -32,8 +32,8 @@ float strength_at(const cv::Mat& image, int x, int y) {
   cv::v_int32x4 xx = cv::v_setzero_s32();
   cv::v_int32x4 xy = cv::v_setzero_s32();
   cv::v_int32x4 yy = cv::v_setzero_s32();
-  for (int row = y - kWindowRadius_px; row <= y + kWindowRadius_px; ++row) {
-    const std::uint8_t* here = image.ptr(row) + x - kWindowRadius_px;
+  for (int row = y - kTensorRadius_px; row <= y + kTensorRadius_px; ++row) {
+    const std::uint8_t* here = image.ptr(row) + x - kTensorRadius_px;
     const cv::v_int16x8 dx = (eight_pixels(here + 1) - eight_pixels(here - 1)) & lanes;
     const cv::v_int16x8 dy =
         (eight_pixels(here + image.step) - eight_pixels(here - image.step)) & lanes;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kMinDepth_baselines = 2.0;
 constexpr float kRowTolerance_px = 2.0F;  // of features of level 0
-constexpr int kMaxOctaveStep = 1;
-constexpr int kWindowRadius_px = 5;  // of the surroundings compared
+constexpr int kMaxStereoOctaveStep = 1;
+constexpr int kPatchRadius_px = 5;  // of the surroundings compared
 constexpr int kSearchRadius_px = 4;
 constexpr int kNumSteps = 2 * kSearchRadius_px + 1;
 constexpr double kMaxDifference_medians = 2.1;  // 1.4 deviations of 1.5 medians
@@ -50,7 +50,7 @@ class Rows {
       for (const std::size_t candidate : of_row_[row]) {
         const float disparity_px = pixel.x() - features_.raw_px[candidate].x();
         if (disparity_px < -scale || disparity_px > max_disparity_px) continue;
-        if (std::abs(features_.octave[candidate] - octave) > kMaxOctaveStep) continue;
+        if (std::abs(features_.octave[candidate] - octave) > kMaxStereoOctaveStep) continue;
         const int bits = distance_bits(side.features.descriptors.ptr(static_cast<int>(feature)),
                                        features_.descriptors.ptr(static_cast<int>(candidate)));
         if (bits >= best_bits) continue;
@@ -78,8 +78,8 @@ struct Found {
 };
 
 cv::Mat window_around(const cv::Mat& level, int x, int y) {
-  return level(cv::Rect(x - kWindowRadius_px, y - kWindowRadius_px, 2 * kWindowRadius_px + 1,
-                        2 * kWindowRadius_px + 1));
+  return level(cv::Rect(x - kPatchRadius_px, y - kPatchRadius_px, 2 * kPatchRadius_px + 1,
+                        2 * kPatchRadius_px + 1));
 }
 
 // Offset of the lowest point of a parabola through three values whose middle one is the lowest.
@@ -101,7 +101,7 @@ std::optional<Found> slide(const Side& left, const Side& right, std::size_t feat
   const int x = static_cast<int>(std::lround(at.x()));
   const int y = static_cast<int>(std::lround(at.y()));
   const int first_x = static_cast<int>(std::lround(guess.x())) - kSearchRadius_px;
-  if (first_x < kWindowRadius_px || first_x + kNumSteps + kWindowRadius_px > right_level.cols) {
+  if (first_x < kPatchRadius_px || first_x + kNumSteps + kPatchRadius_px > right_level.cols) {
     return std::nullopt;
   }
   const cv::Mat window = window_around(left_level, x, y);

@@ -13,7 +13,7 @@ namespace {
 using core::InputError;
 using std::filesystem::path;
 
-constexpr double kFps = 12.0;
+constexpr double kHololensFps = 12.0;
 
 // poses.txt: one pose a line, in the order of the frames.
 core::Trajectory read_poses(const path& file, const std::vector<FrameFiles>& frames) {
@@ -48,7 +48,7 @@ std::optional<Recording> find_hololens(const path& folder, const Config& config)
   if (recording.frames.empty()) {
     throw InputError((folder / "images").string() + ": holds no .jpg, .jpeg or .png image");
   }
-  stamp_by_number(recording.frames, config.fps > 0.0 ? config.fps : kFps);
+  stamp_by_number(recording.frames, config.fps > 0.0 ? config.fps : kHololensFps);
   if (is_folder(folder / "depth")) attach_depth(recording.frames, depths);
   if (is_there(folder / "K.txt")) recording.camera_file = folder / "K.txt";
   recording.truth = read_truth(folder, static_cast<int>(recording.frames.size()));

@@ -16,7 +16,7 @@ namespace {
 using core::InputError;
 using std::filesystem::path;
 
-constexpr double kFps = 30.0;
+constexpr double kSevenScenesFps = 30.0;
 
 bool is_colour_name(const std::string& name) {
   return name.starts_with("frame-") && is_image_name(name) &&
@@ -64,7 +64,7 @@ std::optional<Recording> find_seven_scenes(const path& folder, const Config& con
     if (is_colour_name(name)) recording.frames.push_back({name, 0.0, {folder / name}});
   }
   if (recording.frames.empty()) return std::nullopt;
-  stamp_by_number(recording.frames, config.fps > 0.0 ? config.fps : kFps);
+  stamp_by_number(recording.frames, config.fps > 0.0 ? config.fps : kSevenScenesFps);
   std::vector<path> depths;
   for (const FrameFiles& frame : recording.frames) depths.push_back(sibling(frame, ".depth.png"));
   // a sequence may come without depth, but one with holes is damaged

@@ -17,7 +17,7 @@ namespace {
 using core::InputError;
 using std::filesystem::path;
 
-constexpr double kFps = 30.0;  // of a file or camera that does not say
+constexpr double kUnknownFps = 30.0;  // of a file or camera that does not say
 
 // Never unloaded: FFmpeg leaves things behind that run at exit.
 OpenVideo* load(const path& plugin) {
@@ -54,7 +54,8 @@ class VideoSource : public core::Source {
     }
     rig_ = std::make_shared<const core::Rig>(rig);
     const bool is_live = is_camera_device(video);
-    const double told_hz = decoder_->frame_rate_hz() > 0.0 ? decoder_->frame_rate_hz() : kFps;
+    const double told_hz =
+        decoder_->frame_rate_hz() > 0.0 ? decoder_->frame_rate_hz() : kUnknownFps;
     info_ = {.name = video.stem().string(),
              .format = is_live ? "camera" : "video",
              .num_frames = is_live ? 0 : std::max(decoder_->num_frames(), 0),

@@ -12,8 +12,6 @@
 namespace samewhere::pipeline {
 namespace {
 
-constexpr int kThumbnailWidth_px = 160;
-
 // No frame has an odometry here.
 std::optional<core::OdometryEvidence> without_odometry(const core::Candidate& /*candidate*/,
                                                        const core::Sim3& /*match_from_query*/) {
@@ -75,7 +73,7 @@ DescribedFrame Recognition::describe(const core::Frame& frame) {
   }
   const core::ScopedTimer timer(describe_timings_, "features and thumbnail");
   described.view = features::extract(frame, config_.features);
-  described.thumbnail = report::jpeg_bytes(frame.images[0], kThumbnailWidth_px);
+  described.thumbnail = report::jpeg_bytes(frame.images[0], report::kThumbnailWidth_px);
   return described;
 }
 

@@ -22,8 +22,6 @@
 namespace samewhere::pipeline {
 namespace {
 
-constexpr int kThumbnailWidth_px = 160;
-
 RunOutcome start_outcome(const Config& config, const core::SourceInfo& info) {
   RunOutcome outcome;
   outcome.record.title = info.name;
@@ -179,7 +177,7 @@ void note_frame(const Slam& slam, const core::Frame& frame, report::RunRecord& r
     record.first_pose_s = core::seconds_since_program_start();
   }
   if (slam.is_keyframe(frame.id)) {
-    record.thumbnails[frame.id] = report::jpeg_bytes(frame.images[0], kThumbnailWidth_px);
+    record.thumbnails[frame.id] = report::jpeg_bytes(frame.images[0], report::kThumbnailWidth_px);
   }
 }
 

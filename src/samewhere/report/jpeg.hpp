@@ -7,6 +7,8 @@
 
 namespace samewhere::report {
 
+constexpr int kThumbnailWidth_px = 160;  // of the pictures in reports
+
 // The picture (8-bit grey or BGR, not empty) as JPEG, at most max_width_px wide: shrunk if need be,
 // never enlarged.
 std::string jpeg_bytes(const cv::Mat& image, int max_width_px);

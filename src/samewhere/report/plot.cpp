@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kLeft_px = 70.0;
 constexpr double kTop_px = 80.0;
-constexpr double kWidth_px = 560.0;   // of the plot itself
-constexpr double kHeight_px = 400.0;  //
+constexpr double kPlotWidth_px = 560.0;  // of the plot itself
+constexpr double kHeight_px = 400.0;     //
 constexpr double kLegend_px = 240.0;
 constexpr double kLegendStep_px = 22.0;
 constexpr int kNumSteps = 5;  // of a linear axis
@@ -26,7 +26,7 @@ double share_of(const PlotAxis& axis, double value) {
   return std::log(value / axis.low) / std::log(axis.high / axis.low);
 }
 
-double x_px(const Plot& plot, double x) { return kLeft_px + kWidth_px * share_of(plot.x, x); }
+double x_px(const Plot& plot, double x) { return kLeft_px + kPlotWidth_px * share_of(plot.x, x); }
 double y_px(const Plot& plot, double y) {
   return kTop_px + kHeight_px * (1.0 - share_of(plot.y, y));
 }
@@ -69,13 +69,13 @@ std::string axes(const Plot& plot) {
     fmt::format_to(out,
                    "<line stroke=\"#e5e2dc\" x1=\"{0}\" y1=\"{1:.1f}\" x2=\"{2}\" y2=\"{1:.1f}\"/>"
                    "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
-                   kLeft_px, y_px(plot, y), kLeft_px + kWidth_px, kLeft_px - 8.0,
+                   kLeft_px, y_px(plot, y), kLeft_px + kPlotWidth_px, kLeft_px - 8.0,
                    y_px(plot, y) + 5.0, y);
   }
   fmt::format_to(out,
                  "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
                  "<text x=\"{}\" y=\"{}\">{}</text>\n",
-                 kLeft_px + kWidth_px / 2.0, bottom_px + 44.0, escaped(plot.x.name), kLeft_px,
+                 kLeft_px + kPlotWidth_px / 2.0, bottom_px + 44.0, escaped(plot.x.name), kLeft_px,
                  kTop_px - 14.0, escaped(plot.y.name));
   return svg;
 }
@@ -99,7 +99,7 @@ std::string drawn(const Plot& plot, const PlotCurve& curve) {
 std::string legend(const std::vector<PlotCurve>& curves) {
   std::string svg;
   double y = kTop_px + 8.0;
-  const double x = kLeft_px + kWidth_px + 24.0;
+  const double x = kLeft_px + kPlotWidth_px + 24.0;
   for (const PlotCurve& curve : curves) {
     if (curve.name.empty()) continue;
     const std::string sign =
@@ -120,7 +120,7 @@ std::string legend(const std::vector<PlotCurve>& curves) {
 std::string plot_svg(const Plot& plot) {
   check(plot.x);
   check(plot.y);
-  const double width_px = kLeft_px + kWidth_px + kLegend_px;
+  const double width_px = kLeft_px + kPlotWidth_px + kLegend_px;
   const double height_px = kTop_px + kHeight_px + 96.0;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "

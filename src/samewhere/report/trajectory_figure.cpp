@@ -13,7 +13,7 @@
 namespace samewhere::report {
 namespace {
 
-constexpr double kWidth_px = 960.0;
+constexpr double kFigureWidth_px = 960.0;
 constexpr double kMargin_px = 48.0;
 constexpr double kMaxPlotHeight_px = 560.0;
 constexpr double kMinPlotHeight_px = 120.0;
@@ -53,8 +53,8 @@ class Page {
       }
     }
     const Eigen::Vector2d extent_m = (high - low).cwiseMax(kMinExtent_m);
-    px_per_m_ =
-        std::min((kWidth_px - 2.0 * kMargin_px) / extent_m.x(), kMaxPlotHeight_px / extent_m.y());
+    px_per_m_ = std::min((kFigureWidth_px - 2.0 * kMargin_px) / extent_m.x(),
+                         kMaxPlotHeight_px / extent_m.y());
     middle_m_ = 0.5 * (low + high);
     plot_height_px_ = std::max(extent_m.y() * px_per_m_, kMinPlotHeight_px);
   }
@@ -64,7 +64,8 @@ class Page {
 
   Eigen::Vector2d at(const Eigen::Vector3d& in_world) const {
     const Eigen::Vector2d offset_px = px_per_m_ * (seen(view_, in_world) - middle_m_);
-    return {0.5 * kWidth_px + offset_px.x(), kMargin_px + 0.5 * plot_height_px_ - offset_px.y()};
+    return {0.5 * kFigureWidth_px + offset_px.x(),
+            kMargin_px + 0.5 * plot_height_px_ - offset_px.y()};
   }
 
  private:
@@ -127,7 +128,7 @@ std::string drawn_loops(const RunRecord& record, const Page& page) {
 std::string mark(const Curve::value_type& pose, std::string_view css_class, std::string_view name,
                  const Page& page) {
   const Eigen::Vector2d px = page.at(pose->translation);
-  const bool is_at_right_edge = px.x() > kWidth_px - 2.0 * kMargin_px;
+  const bool is_at_right_edge = px.x() > kFigureWidth_px - 2.0 * kMargin_px;
   return fmt::format(
       "<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"6\"><title>{}</title></circle>"
       "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n",
@@ -144,7 +145,7 @@ std::string start_and_end(const Curve& path, const Page& page) {
 
 // The round length (1, 2 or 5 times a power of ten) that comes nearest to a sixth of the width.
 double bar_length_m(const Page& page) {
-  const double wanted_m = kWidth_px / 6.0 / page.px_per_m();
+  const double wanted_m = kFigureWidth_px / 6.0 / page.px_per_m();
   const double power = std::pow(10.0, std::floor(std::log10(wanted_m)));
   const double digit = wanted_m / power;
   return power * (digit < 1.5 ? 1.0 : digit < 3.5 ? 2.0 : digit < 7.5 ? 5.0 : 10.0);
@@ -187,7 +188,7 @@ std::string trajectory_figure(const RunRecord& record) {
   return fmt::format(
              "<figure><div class=\"plot\"><svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
              "aria-label=\"the path of the camera\">\n",
-             kWidth_px, page.height_px()) +
+             kFigureWidth_px, page.height_px()) +
          drawn(odometry, "odometry", page) + drawn(path, "path", page) +
          drawn(truth, "truth", page) + loops + start_and_end(path, page) + scale_bar(page) +
          "</svg></div>" + legend(record, !loops.empty()) +

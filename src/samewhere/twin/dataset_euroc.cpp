@@ -15,7 +15,7 @@ namespace {
 using core::InputError;
 
 // The text files of the folder, as they grow.
-struct Lists {
+struct EurocLists {
   std::string pictures;  // the same for every camera
   std::string imu;
   std::vector<double> imu_stamps_s;
@@ -80,7 +80,7 @@ void check_rig(const core::Frame& frame, const std::string& name) {
       name, frame.images.size(), frame.rig->cameras.size()));
 }
 
-void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists) {
+void add_frame(const PartialFolder& out, const core::Frame& frame, EurocLists& lists) {
   const std::string file = fmt::format("{}.png", stamp_ns(frame.stamp_s));
   for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
     out.write(fmt::format("mav0/cam{}/data/{}", camera, file), png_bytes(frame.images[camera]));
@@ -149,7 +149,7 @@ std::string states_csv(const core::Trajectory& bodies,
   return text;
 }
 
-void write_cameras(const PartialFolder& out, const Lists& lists) {
+void write_cameras(const PartialFolder& out, const EurocLists& lists) {
   for (std::size_t i = 0; i < lists.rig->cameras.size(); ++i) {
     const std::string camera = fmt::format("mav0/cam{}/", i);
     out.write(camera + "data.csv", "#timestamp [ns],filename\n" + lists.pictures);
@@ -159,7 +159,7 @@ void write_cameras(const PartialFolder& out, const Lists& lists) {
   }
 }
 
-void write_imu(const PartialFolder& out, const Lists& lists) {
+void write_imu(const PartialFolder& out, const EurocLists& lists) {
   if (!lists.rig->imu) return;
   out.write("mav0/imu0/data.csv",
             "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
@@ -186,7 +186,7 @@ void write_states(const PartialFolder& out, const core::Truth& known, const core
 void write_euroc_folder(core::Source& source, const std::filesystem::path& folder,
                         const MakeTables& tables) {
   PartialFolder out(folder);
-  Lists lists;
+  EurocLists lists;
   const std::string name = source.info().name;
   const auto take = [&](const core::Frame& frame) {
     check_rig(frame, name);

@@ -12,7 +12,7 @@ namespace samewhere::twin {
 namespace {
 
 // The text files of the folder, as they grow.
-struct Lists {
+struct TumLists {
   std::string rgb;
   std::string depth;
   std::string accelerometer;
@@ -38,7 +38,7 @@ void add_picture(const PartialFolder& out, const char* folder, const core::Frame
   list += fmt::format("{:.6f} {}\n", frame.stamp_s, file);
 }
 
-void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists) {
+void add_frame(const PartialFolder& out, const core::Frame& frame, TumLists& lists) {
   add_picture(out, "rgb", frame, frame.images.front(), lists.rgb);
   if (frame.depth_m) add_picture(out, "depth", frame, depth_units(*frame.depth_m), lists.depth);
   for (const core::ImuSample& sample : frame.imu_since_last) {
@@ -57,7 +57,7 @@ void add_frame(const PartialFolder& out, const core::Frame& frame, Lists& lists)
 void write_tum_folder(core::Source& source, const std::filesystem::path& folder,
                       const MakeTables& tables) {
   PartialFolder out(folder);
-  Lists lists;
+  TumLists lists;
   const auto take = [&](const core::Frame& frame) { add_frame(out, frame, lists); };
   write_each_frame(source, take);
   // before the source's truth, of which they may be a part: who makes them tells how far they are

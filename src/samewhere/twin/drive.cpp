@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <variant>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/drive.hpp>
 #include <samewhere/twin/leg.hpp>
 #include <samewhere/twin/path.hpp>
@@ -11,9 +11,6 @@
 
 namespace samewhere::twin {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree_rad = kPi / 180.0;
 
 constexpr int kSubsteps = 10;  // of a step, for the integral of the speed
 constexpr double kSubstep_s = kDriveStep_s / kSubsteps;

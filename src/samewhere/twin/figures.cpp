@@ -1,14 +1,13 @@
 #include <cmath>
-#include <numbers>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/figures.hpp>
 #include <samewhere/twin/shapes.hpp>
 
 namespace samewhere::twin {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kUsualHeight_m = 1.75F;
 
 Colour dye(core::Random& random) {
@@ -258,17 +257,17 @@ std::vector<Rectangle> figure(const Look& look, float phase, const Eigen::Vector
   std::vector<Rectangle> rectangles;
   Shapes shapes(rectangles, stand_of(position_m, up.cross(front), up));
   Body body(look, shapes);
-  const float cycle_rad = 2.0F * kPi * phase;
+  const float cycle_rad = 2.0F * kPi_f * phase;
   // the lower foot stands on the floor
   const float lowest_m =
-      std::min(leg_at(-1.0F, cycle_rad).end_m.y(), leg_at(1.0F, cycle_rad + kPi).end_m.y());
+      std::min(leg_at(-1.0F, cycle_rad).end_m.y(), leg_at(1.0F, cycle_rad + kPi_f).end_m.y());
   const float lift_m = kSole_m - lowest_m;
   add_trunk(body, lift_m);
   add_head(body, lift_m);
   for (const float side : {-1.0F, 1.0F}) {
-    const float leg_rad = side < 0.0F ? cycle_rad : cycle_rad + kPi;
+    const float leg_rad = side < 0.0F ? cycle_rad : cycle_rad + kPi_f;
     add_leg(body, side, leg_rad, lift_m);
-    add_arm(body, side, leg_rad + kPi, lift_m);
+    add_arm(body, side, leg_rad + kPi_f, lift_m);
   }
   return rectangles;
 }

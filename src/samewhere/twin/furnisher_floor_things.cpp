@@ -1,14 +1,12 @@
 #include <cmath>
-#include <numbers>
 
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/clutter.hpp>
 #include <samewhere/twin/furnisher.hpp>
 #include <samewhere/twin/piece.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 // A leaf from where its stem ends, its tip along `tip`, its face turned by chance about that.
 Panel leaf_panel(const Eigen::Vector3f& base_m, const Eigen::Vector3f& tip,
@@ -33,7 +31,7 @@ void add_crown(Piece& piece, const Crown& crown, float pot_m) {
   const Material stem = piece.made_of(Finish::kPaint, 0.7F * green + 0.2F * paints::kCork);
   const int num_stems = (crown.num_leaves + kPerStem - 1) / kPerStem;
   for (int i = 0; i < num_stems; ++i) {
-    const float turn_rad = 2.0F * kPi * (static_cast<float>(i) / static_cast<float>(num_stems)) +
+    const float turn_rad = 2.0F * kPi_f * (static_cast<float>(i) / static_cast<float>(num_stems)) +
                            piece.draws().blend(-0.3F, 0.3F);
     const float reach_m = crown.radius_m * piece.draws().blend(0.25F, 0.8F);
     const float top_m = crown.height_m * piece.draws().blend(0.7F, 1.0F);

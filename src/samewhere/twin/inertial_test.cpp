@@ -1,17 +1,14 @@
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/inertial.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree_rad = kPi / 180.0;
 
 Route tour(Carrier carrier) {
   const bool is_robot = carrier == Carrier::kRobot;

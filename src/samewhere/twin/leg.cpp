@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/leg.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 constexpr double kGrid_m = 0.02;  // of what is computed along a way
 constexpr double kLookReach_m = 1.1;

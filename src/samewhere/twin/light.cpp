@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <samewhere/core/share_out.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/light.hpp>
 #include <samewhere/twin/texture.hpp>
 
@@ -16,7 +16,6 @@ constexpr int kNumBakeRays = 32;
 constexpr int kNumMovingRays = 16;
 // light of all bounces over that of the first, in a corridor whose surfaces reflect 40 %
 constexpr float kAllBounces = 1.0F / (1.0F - 0.4F);
-constexpr float kPi = std::numbers::pi_v<float>;
 // a grid point with another thing in front of it has no light of its own
 const Colour kBuried = Colour::Constant(-1.0F);
 const Colour kShade = Colour::Constant(0.1F);
@@ -38,7 +37,7 @@ std::vector<Emitter> emitters_of(const std::vector<Rectangle>& rectangles) {
     const Eigen::Array2f num_pieces = (r.size_m.array() / kPiece_m).ceil();
     const Eigen::Vector2f piece_m = r.size_m.array() / num_pieces;
     const float radiance = thrown_over_seen(r.material.finish) * r.material.radiance;
-    const Colour power = mean_reflectance(r.material) * (radiance * piece_m.prod() / kPi);
+    const Colour power = mean_reflectance(r.material) * (radiance * piece_m.prod() / kPi_f);
     for (float v = 0.5F; v < num_pieces.y(); v += 1.0F) {
       for (float u = 0.5F; u < num_pieces.x(); u += 1.0F) {
         const Eigen::Vector3f position = r.at(Eigen::Vector2f(u, v).cwiseProduct(piece_m));
@@ -181,7 +180,7 @@ void for_each_new_point(const SurfaceColours& colours, int r, const Steps& steps
 // leaf, must not count for all of that, or it paints a blotch wherever a ray happens to meet it.
 float share_filled(const Rectangle& r, float distance_m) {
   const float area_m2 = r.size_m.prod();
-  return area_m2 / (kPi * distance_m * distance_m + area_m2);
+  return area_m2 / (kPi_f * distance_m * distance_m + area_m2);
 }
 
 // What follows from points that are known already.
@@ -286,7 +285,7 @@ Colour Light::light_from(const Emitter& emitter, const SurfacePoint& point) cons
   if (point.normal.dot(to_emitter) <= 0.0F || cosines <= 0.0F) return Colour::Zero();
   if (rays_.is_blocked({point.position, to_emitter})) return Colour::Zero();
   // as a disc: however close it is, what it sends is never brighter than it is itself
-  return emitter.power * (cosines * window / (squared_m2 + emitter.area_m2 / kPi));
+  return emitter.power * (cosines * window / (squared_m2 + emitter.area_m2 / kPi_f));
 }
 
 Colour Light::light_from(const std::vector<Emitter>& emitters, const SurfacePoint& point) const {

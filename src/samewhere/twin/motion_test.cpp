@@ -1,18 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/motion.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree_rad = kPi / 180.0;
 
 Route route_along(Carrier carrier, const std::vector<Step>& steps) {
   const bool is_robot = carrier == Carrier::kRobot;

@@ -1,15 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/path.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // The bell's integral from -1 to x in [-1, 1]: a step, rounded.
 double rounded_step(double x) { return 0.5 * (1.0 + x + std::sin(kPi * x) / kPi); }

@@ -5,7 +5,7 @@
 namespace samewhere::twin {
 namespace {
 
-constexpr int kNumFloors = 5;
+constexpr int kNumHotelFloors = 5;
 const Eigen::Vector2f kStairCorner_m = Eigen::Vector2f::Zero();
 // the lanes towards the stair and away from it, 0.7 m from the walls
 constexpr double kUp_m = u_stair::kWidth_m - 0.70;
@@ -97,12 +97,12 @@ void walk_out_and_back(Route& route, int floor, double stretch_m, double back_m)
 World hotel(const Spec& spec) {
   Plan plan;
   std::vector<Storey> storeys;
-  for (int floor = 0; floor < kNumFloors; ++floor) storeys.push_back(add_storey(plan, floor));
+  for (int floor = 0; floor < kNumHotelFloors; ++floor) storeys.push_back(add_storey(plan, floor));
   std::vector<int> stairs;
-  for (int floor = -1; floor < kNumFloors; ++floor) stairs.push_back(add_stair(plan, floor));
+  for (int floor = -1; floor < kNumHotelFloors; ++floor) stairs.push_back(add_stair(plan, floor));
 
   Draft draft = draft_of(spec, plan);
-  for (int floor = 0; floor < kNumFloors; ++floor) {
+  for (int floor = 0; floor < kNumHotelFloors; ++floor) {
     furnish_storey(draft, storeys[static_cast<std::size_t>(floor)], floor);
   }
   for (const int unit : stairs) Dresser(draft, unit).dress_u_stair(kStairCorner_m, 0.0F);
@@ -114,7 +114,7 @@ World hotel(const Spec& spec) {
   route.start_heading_rad = -1.57079632679490;
   constexpr double kStretch_m = 1.2;
   constexpr double kTopStretch_m = 5.2;  // so that the second look comes late enough to count
-  constexpr int kTop = kNumFloors - 1;
+  constexpr int kTop = kNumHotelFloors - 1;
   for (int floor = 0; floor < kTop; ++floor) {
     walk_out_and_back(route, floor, kStretch_m, 0.0);
     for (const auto& point : way_up(kStairCorner_m, 0.0F)) {

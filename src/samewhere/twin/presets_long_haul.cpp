@@ -7,7 +7,7 @@
 namespace samewhere::twin {
 namespace {
 
-constexpr int kNumFloors = 3;
+constexpr int kNumLongHaulFloors = 3;
 constexpr int kNumWings = 4;
 constexpr float kPitch_m = 12.0F;  // from wing to wing
 constexpr float kDepth_m = 14.0F;  // of the building, from wall to wall of its long corridors
@@ -114,8 +114,8 @@ double node_x_m(int along) {
 
 class Graph {
  public:
-  Graph() : nodes_(static_cast<std::size_t>(kNumFloors * kNumOnFloor)) {
-    for (int floor = 0; floor < kNumFloors; ++floor) add_floor(floor);
+  Graph() : nodes_(static_cast<std::size_t>(kNumLongHaulFloors * kNumOnFloor)) {
+    for (int floor = 0; floor < kNumLongHaulFloors; ++floor) add_floor(floor);
   }
 
   const Node& node(int index) const { return nodes_[static_cast<std::size_t>(index)]; }
@@ -210,13 +210,13 @@ World long_haul(const Spec& spec) {
   std::vector<Wing> wings;
   std::vector<std::pair<End, int>> ends;
   std::vector<int> stairs;
-  for (int floor = 0; floor < kNumFloors; ++floor) {
+  for (int floor = 0; floor < kNumLongHaulFloors; ++floor) {
     for (int i = 0; i < kNumWings; ++i) wings.push_back(add_wing(plan, floor, i));
     for (const bool is_east : {false, true})
       ends.emplace_back(add_end(plan, floor, is_east), floor);
   }
   // one more below, so that every floor has a flight down
-  for (int floor = -1; floor < kNumFloors; ++floor) {
+  for (int floor = -1; floor < kNumLongHaulFloors; ++floor) {
     for (const bool is_east : {false, true}) stairs.push_back(add_stair(plan, floor, is_east));
   }
   Draft draft = draft_of(spec, plan);

@@ -1,13 +1,13 @@
 #include <cmath>
 #include <numbers>
 
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/shake.hpp>
 
 namespace samewhere::twin {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr double kLargestShare = kLargestWobble / 3.0;
 
 // Somebody holding a camera in front of the chest.

@@ -1,12 +1,10 @@
 #include <cmath>
-#include <numbers>
 
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/shapes.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 // Any direction at right angles to a unit vector.
 Eigen::Vector3f across(const Eigen::Vector3f& along) {
@@ -66,7 +64,7 @@ void Shapes::add_bar(const Bar& bar, const Material& material) {
   const Eigen::Vector3f along = (bar.to_m - bar.from_m).normalized();
   const Eigen::Vector3f side = across(along);
   const Eigen::Vector3f other = along.cross(side);
-  const float half_rad = kPi / static_cast<float>(bar.num_sides);
+  const float half_rad = kPi_f / static_cast<float>(bar.num_sides);
   // as far out as a circle of the same girth, to within a hair
   const float side_m = 2.0F * bar.radius_m * std::tan(half_rad);
   for (int i = 0; i < bar.num_sides; ++i) {
@@ -96,7 +94,7 @@ void Shapes::add_end(const Bar& bar, const Eigen::Vector3f& along, const Eigen::
   constexpr float kHair_m = 2e-5F;
   const Eigen::Vector3f normal = -along;
   const Eigen::Vector3f other = along.cross(side);
-  const float half_rad = kPi / static_cast<float>(bar.num_sides);
+  const float half_rad = kPi_f / static_cast<float>(bar.num_sides);
   const float side_m = 2.0F * bar.radius_m * std::tan(half_rad);
   for (int i = 0; i < bar.num_sides / 2; ++i) {
     const float angle_rad = 2.0F * half_rad * static_cast<float>(i);
@@ -113,7 +111,7 @@ void Shapes::add_end(const Bar& bar, const Eigen::Vector3f& along, const Eigen::
 
 void Shapes::add_post(const Post& post, const Material& material) {
   constexpr float kSidePattern_m = 0.1F;  // whatever the girth: stripes run on to the post above
-  const float half_rad = kPi / static_cast<float>(post.num_sides);
+  const float half_rad = kPi_f / static_cast<float>(post.num_sides);
   // from the middle to a corner and along its normal, before the ellipse stretches them
   const auto out = [&](int corner) -> Eigen::Array2f {
     const float angle_rad = half_rad * static_cast<float>(2 * corner - 1);
@@ -147,7 +145,7 @@ void Shapes::add_lid(const Post& post, const Material& material) {
   constexpr float kHair_m = 2e-4F;
   constexpr int kNumStrips = 5;
   for (int i = 0; i < kNumStrips; ++i) {
-    const float angle_rad = (15.0F + 15.0F * static_cast<float>(i)) * kPi / 180.0F;
+    const float angle_rad = (15.0F + 15.0F * static_cast<float>(i)) * kPi_f / 180.0F;
     const Eigen::Vector2f half_m =
         post.half_m.cwiseProduct(Eigen::Vector2f(std::cos(angle_rad), std::sin(angle_rad)));
     const Eigen::Vector2f middle_m = post.middle_m;

@@ -1,8 +1,8 @@
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/camera.hpp>
 #include <samewhere/twin/test_rooms.hpp>
 #include <samewhere/twin/truth.hpp>
@@ -15,7 +15,6 @@ using core::PlaceTruth;
 using testing::kCamera;
 using testing::looking;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kSecondRoom_m = testing::kRoomLength_m + 0.1;
 
 // One frame a second.

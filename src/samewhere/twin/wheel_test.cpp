@@ -1,15 +1,13 @@
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/twin/angles.hpp>
 #include <samewhere/twin/wheel.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Route robot_route(const std::vector<Step>& steps) {
   return {.start_m = {1.0, -2.0, 0.0},
