@@ -71,7 +71,8 @@ scene::LocalMap with_decoys(scene::LocalMap map, const features::View& view,
 
 TEST_F(TestTracker, AFewThatAgreeNearAWrongGuessDoNotWin) {
   const features::View view = features::test_view(world_, 1, moved_);
-  const core::Rigid3 wrong = moved_ * core::Rigid3{core::exp_so3({0.0, 0.06, 0.0}), Eigen::Vector3d::Zero()};
+  const core::Rigid3 wrong =
+      moved_ * core::Rigid3{core::exp_so3({0.0, 0.06, 0.0}), Eigen::Vector3d::Zero()};
   const scene::LocalMap map = with_decoys(map_, view, wrong, 60);
   TrackerSettings credulous;
   credulous.track.sure_inliers = 6;
