@@ -201,7 +201,8 @@ void Schur::step_points() {
     for (std::size_t i = point.begin; i < point.end; ++i) {
       const Term& term = terms_[i];
       if (term.free_camera < 0) continue;
-      gradient += term.by_both.transpose() * camera_step_.segment<6>(6 * term.free_camera);
+      const Eigen::Index row = 6 * static_cast<Eigen::Index>(term.free_camera);
+      gradient += term.by_both.transpose() * camera_step_.segment<6>(row);
     }
     point_step_.emplace_back(-(point.inverse * gradient));
   }
