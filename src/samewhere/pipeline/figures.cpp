@@ -51,7 +51,8 @@ SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
           record.odometry,
           static_cast<int>(report::final_rows(record.ledger).size()),
           accepted_loops(record),
-          is_scale_free};
+          is_scale_free,
+          {}};
 }
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth) {
@@ -72,6 +73,7 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.num_candidates = findings.num_candidates;
   evaluation.loops = evaluate::check_loops(findings.loops, truth);
   evaluation.knows_impostors = !truth.impostors.empty();
+  evaluation.drift_model = evaluate::consistency(findings.odometry_edges, truth.trajectory);
   return evaluation;
 }
 
@@ -133,6 +135,12 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
     figures.push_back(
         {"translational error over 1 s, median (RMSE)",
          fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
+  }
+  if (const auto& drift = evaluation.drift_model) {
+    figures.push_back(
+        {"odometry's squared error over its belief",
+         fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} edges)", drift->mean,
+                     drift->band_low, drift->band_high, drift->median, drift->num_motions)});
   }
   const auto& loops = evaluation.loops;
   figures.push_back({"candidates judged", std::to_string(evaluation.num_candidates)});

@@ -6,6 +6,7 @@
 
 #include <samewhere/core/truth.hpp>
 #include <samewhere/describe/config.hpp>
+#include <samewhere/evaluate/consistency.hpp>
 #include <samewhere/evaluate/loop_check.hpp>
 #include <samewhere/evaluate/precision_recall.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
@@ -21,7 +22,8 @@ struct SlamFindings {
   core::Trajectory odometry;    // before any correction
   int num_candidates = 0;
   std::vector<evaluate::AcceptedLoop> loops;
-  bool is_scale_free = false;  // monocular: aligned with a scale
+  bool is_scale_free = false;                            // monocular: aligned with a scale
+  std::vector<evaluate::MeasuredMotion> odometry_edges;  // empty if not known, or without a scale
 };
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free);
@@ -38,6 +40,7 @@ struct SlamEvaluation {
   int num_candidates = 0;
   evaluate::LoopCheck loops;
   bool knows_impostors = false;  // whether the truth names any
+  std::optional<evaluate::Consistency> drift_model;
 };
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth);

@@ -217,7 +217,9 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
 
   report::RunRecord& record = outcome.record;
   record_slam(slam, names, record);
-  const SlamEvaluation evaluation = evaluate_slam(findings_of(record, is_monocular), truth);
+  SlamFindings findings = findings_of(record, is_monocular);
+  if (!is_monocular) findings.odometry_edges = odometry_edges_of(slam.map(), slam.session());
+  const SlamEvaluation evaluation = evaluate_slam(findings, truth);
   record.figures = figures_of(evaluation);
   record.figures.push_back(
       {"keyframes / landmarks",

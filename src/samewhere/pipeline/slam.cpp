@@ -135,4 +135,19 @@ core::Trajectory odometry_of(const scene::MapVersion& map,
   return placed(map, frames, [&](core::KeyframeId id) { return world_from_body[id.index()]; });
 }
 
+std::vector<evaluate::MeasuredMotion> odometry_edges_of(const scene::MapVersion& map,
+                                                        std::uint16_t session) {
+  std::vector<evaluate::MeasuredMotion> edges;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    const scene::Keyframe& keyframe = map.keyframes[i];
+    if (!keyframe.odometry || keyframe.view.frame.session() != session) continue;
+    const scene::Keyframe& parent = map.at(keyframe.odometry->parent);
+    const core::Rigid3& body_from_camera = keyframe.view.rig->body_from_camera[0];
+    edges.push_back({parent.view.stamp_s, keyframe.view.stamp_s,
+                     inverse(body_from_camera) * parent_from_keyframe(keyframe) * body_from_camera,
+                     keyframe.odometry->information});
+  }
+  return edges;
+}
+
 }  // namespace samewhere::pipeline

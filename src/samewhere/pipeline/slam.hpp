@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <samewhere/core/truth.hpp>
+#include <samewhere/evaluate/consistency.hpp>
 #include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/pipeline/mapping.hpp>
 #include <samewhere/pipeline/tracking.hpp>
@@ -74,5 +75,9 @@ core::Trajectory trajectory_of(const scene::MapVersion& map,
 // The same as if no loop had been closed.
 core::Trajectory odometry_of(const scene::MapVersion& map,
                              const std::vector<core::FramePose>& frames);
+// From each keyframe of a session to the next, as well as is known without loops, with what the
+// drift model says of it.
+std::vector<evaluate::MeasuredMotion> odometry_edges_of(const scene::MapVersion& map,
+                                                        std::uint16_t session);
 
 }  // namespace samewhere::pipeline
