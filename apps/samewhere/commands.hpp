@@ -14,6 +14,7 @@ void add_dense_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app);
 void add_map_command(CLI::App& app);
+void add_optimize_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_train_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);

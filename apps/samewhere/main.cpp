@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   add_bench_command(app, exit_code);
   add_twin_command(app);
   add_map_command(app);
+  add_optimize_command(app);
   add_config_command(app);
   add_calibrate_command(app);
   add_train_command(app);

@@ -1,7 +1,10 @@
 #include <sstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
 
@@ -63,6 +66,111 @@ TEST(G2oFile, HasALineForEachNodeAndEdge) {
             "VERTEX_SE3:QUAT 0\nVERTEX_SE3:QUAT 1\nVERTEX_SE3:QUAT 3\nFIX 0\n"
             "EDGE_SE3:QUAT 0\nEDGE_SE3:QUAT 1\n")
       << "node 2 hangs on no edge: a culled keyframe";
+}
+
+class G2oRead : public ::testing::Test {
+ protected:
+  G2oGraph read(const std::string& text) const {
+    core::write_file(path_, text);
+    return read_g2o(path_);
+  }
+
+  // What the file is refused with.
+  std::string complaint(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const std::string path_ = ::testing::TempDir() + "g2o_read_test.g2o";
+};
+
+// A ring with chords, in space or in the plane.
+PoseGraph ring(core::Random& random, bool is_planar) {
+  const auto pose = [&] {
+    return is_planar ? core::Rigid3{core::exp_so3({0.0, 0.0, random.gaussian()}),
+                                    {random.gaussian(), random.gaussian(), 0.0}}
+                     : random_pose(random, 1.0);
+  };
+  PoseGraph graph;
+  graph.is_planar = is_planar;
+  for (int i = 0; i < 6; ++i) graph.world_from_node.push_back(pose());
+  for (int i = 0; i < 6; ++i) {
+    graph.edges.push_back({i, (i + 1) % 6, pose(), random_information(random), i == 5});
+    if (is_planar) {  // nothing joins the plane to what leaves it
+      core::Matrix6d& information = graph.edges.back().information;
+      const Eigen::Matrix3d planar = information(kPlanarRows, kPlanarRows);
+      information = core::Matrix6d::Identity();
+      information(kPlanarRows, kPlanarRows) = planar;
+    }
+  }
+  return graph;
+}
+
+TEST_F(G2oRead, WhatWasWrittenComesBackInSpaceAndInThePlane) {
+  for (const bool is_planar : {false, true}) {
+    core::Random random(is_planar ? 5 : 6);
+    const PoseGraph graph = ring(random, is_planar);
+    const G2oGraph found = read(g2o_text(graph, {10, 11, 12, 13, 14, 15}));
+    EXPECT_EQ(found.names, (std::vector<long>{10, 11, 12, 13, 14, 15}));
+    EXPECT_EQ(found.graph.is_planar, is_planar);
+    EXPECT_EQ(found.graph.fixed_nodes, std::vector<int>{0});
+    ASSERT_EQ(found.graph.edges.size(), graph.edges.size());
+    for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+      EXPECT_LT(core::log_r3so3(inverse(graph.world_from_node[i]) * found.graph.world_from_node[i])
+                    .norm(),
+                1e-9);
+      EXPECT_EQ(found.graph.edges[i].is_loop, graph.edges[i].is_loop);
+      EXPECT_NEAR(chi2_of(found.graph, found.graph.edges[i]) / chi2_of(graph, graph.edges[i]), 1.0,
+                  1e-9);
+    }
+  }
+}
+
+TEST_F(G2oRead, LinesOfUnknownTypesAreCounted) {
+  core::Random random(1);
+  const std::string text = g2o_text(ring(random, false));
+  const G2oGraph found = read("VERTEX_XY 7 1 2\n" + text + "EDGE_SE3_XYZ 1 2\nVERTEX_XY 8 1 2\n");
+  EXPECT_EQ(found.skipped, (std::map<std::string, int>{{"VERTEX_XY", 2}, {"EDGE_SE3_XYZ", 1}}));
+  EXPECT_EQ(found.graph.edges.size(), 6U);
+}
+
+TEST_F(G2oRead, WhatIsBrokenIsNamedWithItsLine) {
+  const std::string vertices = "VERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 1 0 0\n";
+  const std::string edge = "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n";
+  EXPECT_EQ(complaint(vertices + edge), "");
+  using ::testing::HasSubstr;
+  const std::pair<std::string, std::string> broken[] = {
+      {"", "holds 0 vertices and 0 edges, expected some of both"},
+      {vertices, "holds 2 vertices and 0 edges"},
+      {vertices + "EDGE_SE2 1 2 1 0 0 1 0 0\n", "line 3: found 8 values, expected 11 of EDGE_SE2"},
+      {vertices + "EDGE_SE2 1 2 nan 0 0 1 0 0 1 0 1\n", "line 3: found 'nan', expected a finite"},
+      {vertices + "EDGE_SE2 1 2 1 0 0 1 2 0 1 0 1\n",
+       "line 3: an information that is not positive"},
+      {vertices + "EDGE_SE2 1 3 1 0 0 1 0 0 1 0 1\n", "line 3: names vertex 3"},
+      {vertices + "EDGE_SE2 1 1 1 0 0 1 0 0 1 0 1\n", "line 3: joins 1 to itself"},
+      {vertices + "EDGE_SE2 1 -2 1 0 0 1 0 0 1 0 1\n", "line 3: found '-2', expected the number"},
+      {vertices + "VERTEX_SE2 1 0 0 0\n" + edge, "line 3: vertex 1 a second time"},
+      {vertices + "VERTEX_SE3:QUAT 3 0 0 0 0 0 0 1\n" + edge, "expected all of one kind"},
+      {"VERTEX_SE3:QUAT 3 0 0 0 0 0 0 2\n" + edge, "line 1: quaternion of norm 2, expected 1"},
+      {vertices + edge + "FIX\n", "line 4: found no number"},
+      {vertices + edge + "FIX 9\n", "line 4: names vertex 9"}};
+  for (const auto& [text, expected] : broken) {
+    EXPECT_THAT(complaint(text), HasSubstr(expected)) << text;
+    EXPECT_THAT(complaint(text), HasSubstr("g2o_read_test.g2o")) << text;
+  }
+}
+
+TEST_F(G2oRead, AFileCutAnywhereIsReadOrRefused) {
+  core::Random random(2);
+  const std::string text = g2o_text(ring(random, false));
+  int num_refused = 0;
+  for (std::size_t length = 0; length < text.size(); length += 7)
+    num_refused += complaint(text.substr(0, length)).empty() ? 0 : 1;
+  EXPECT_GT(num_refused, 100);
 }
 
 }  // namespace

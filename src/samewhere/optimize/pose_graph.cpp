@@ -1,53 +1,107 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include <samewhere/core/errors.hpp>
-#include <samewhere/optimize/pose_block.hpp>
+#include <samewhere/optimize/edge_problem.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
 
 namespace samewhere::optimize {
 namespace {
 
-class EdgeCost : public ceres::SizedCostFunction<6, 7, 7> {
- public:
-  explicit EdgeCost(const PoseEdge& edge) : edge_(edge), whitening_(whitening(edge.information)) {}
+constexpr double kGrowth = 1.4;                 // of the control parameter from round to round
+constexpr int kMaxRounds = 100;                 // the parameter has grown by 4e14
+constexpr int kMaxChecks = 10;                  // of sides changed after the rounds
+constexpr double kPlanarShare = 11.34 / 16.81;  // chi-square 99 %: 3 degrees of freedom for 6
 
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const core::Rigid3 world_from_a = from_block(blocks[0]);
-    const core::Rigid3 world_from_b = from_block(blocks[1]);
-    Eigen::Map<core::Vector6d> whitened(residuals);
-    whitened = whitening_ * edge_error(edge_, world_from_a, world_from_b);
-    if (jacobians == nullptr) return true;
-    const EdgeJacobians derivatives = edge_jacobians(edge_, world_from_a, world_from_b);
-    write_by_tangent<6>(whitening_ * derivatives.by_a, jacobians[0]);
-    write_by_tangent<6>(whitening_ * derivatives.by_b, jacobians[1]);
-    return true;
+// Graduated non-convexity over the loop edges of a graph.
+class Graduation {
+ public:
+  Graduation(PoseGraph& graph, const Config& config)
+      : graph_(graph),
+        config_(config),
+        problem_(graph, config),
+        limit_(config.loop_chi2 * (graph.is_planar ? kPlanarShare : 1.0)) {
+    for (std::size_t i = 0; i < graph.edges.size(); ++i)
+      if (graph.edges[i].is_loop) loops_.push_back(i);
+  }
+
+  PoseGraphSummary solve() {
+    PoseGraphSummary summary = problem_.solve(config_.graph_iterations);
+    graduate(summary);
+    settle(summary);
+    summary.weights = problem_.weights();
+    return summary;
   }
 
  private:
-  PoseEdge edge_;
-  core::Matrix6d whitening_;
+  void go_on(int max_iterations, PoseGraphSummary& summary) {
+    const PoseGraphSummary found = problem_.solve(max_iterations);
+    summary.final_cost = found.final_cost;
+    summary.num_iterations += found.num_iterations;
+  }
+
+  // From nearly convex, where all edges count, to truncated least squares.
+  void graduate(PoseGraphSummary& summary) {
+    double worst = 0.0;
+    for (const std::size_t loop : loops_)
+      worst = std::max(worst, chi2_of(graph_, graph_.edges[loop]));
+    if (worst <= limit_) return;
+    double control = limit_ / (2.0 * worst - limit_);
+    for (int round = 0; round < kMaxRounds && !weigh(control); ++round, control *= kGrowth)
+      go_on(config_.gnc_iterations, summary);
+  }
+
+  // Whether every weight is 0 or 1.
+  bool weigh(double control) {
+    bool is_settled = true;
+    for (const std::size_t loop : loops_) {
+      const double squared = chi2_of(graph_, graph_.edges[loop]);
+      double& weight = problem_.weight(loop);
+      if (squared >= (control + 1.0) / control * limit_) {
+        weight = 0.0;
+      } else if (squared <= control / (control + 1.0) * limit_) {
+        weight = 1.0;
+      } else {
+        weight = std::sqrt(limit_ / squared * control * (control + 1.0)) - control;
+        is_settled = false;
+      }
+    }
+    return is_settled;
+  }
+
+  // Believes what fits and refuses what is bent, until no edge changes sides.
+  void settle(PoseGraphSummary& summary) {
+    for (int check = 0; check < kMaxChecks; ++check) {
+      bool has_changed = false;
+      for (const std::size_t loop : loops_) {
+        const double weight = chi2_of(graph_, graph_.edges[loop]) <= limit_ ? 1.0 : 0.0;
+        has_changed = has_changed || weight != problem_.weight(loop);
+        problem_.weight(loop) = weight;
+      }
+      if (!has_changed && check > 0) return;
+      go_on(config_.graph_iterations, summary);
+    }
+  }
+
+  PoseGraph& graph_;
+  const Config& config_;
+  EdgeProblem problem_;
+  double limit_;
+  std::vector<std::size_t> loops_;
 };
 
-// One thread and EIGEN_SPARSE: with two threads, or with CHOLMOD, the last bits differ from run to
-// run.
-ceres::Solver::Options solver_options(const Config& config) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  options.num_threads = 1;
-  options.max_num_iterations = config.graph_iterations;
-  options.logging_type = ceres::SILENT;
-  return options;
-}
-
-void add_edges(ceres::Problem& problem, const PoseGraph& graph, std::vector<PoseBlock>& blocks,
-               const Config& config) {
-  for (const auto& edge : graph.edges) {
-    const auto is_node = [&](int i) { return i >= 0 && i < static_cast<int>(blocks.size()); };
-    core::require(is_node(edge.a) && is_node(edge.b) && edge.a != edge.b,
-                  "an edge joins two nodes of the graph");
-    ceres::LossFunction* loss = edge.is_loop ? new ceres::HuberLoss(config.loop_huber) : nullptr;
-    problem.AddResidualBlock(new EdgeCost(edge), loss,
-                             blocks[static_cast<std::size_t>(edge.a)].data(),
-                             blocks[static_cast<std::size_t>(edge.b)].data());
+// What the losses left of an edge's weight, in a graph that is solved.
+double weight_of(double chi2, const Config& config) {
+  switch (config.loop_loss) {
+    case LoopLoss::kHuber:
+      return std::min(1.0, config.loop_huber / std::sqrt(std::max(chi2, 1e-300)));
+    case LoopLoss::kDcs: {
+      const double scale = std::min(1.0, 2.0 * config.loop_dcs / (config.loop_dcs + chi2));
+      return scale * scale;
+    }
+    default:
+      return 1.0;
   }
 }
 
@@ -60,6 +114,13 @@ core::Vector6d edge_error(const PoseEdge& edge, const core::Rigid3& world_from_a
   error << a_from_b.translation - edge.a_from_b.translation,
       core::log_so3(edge.a_from_b.rotation.conjugate() * a_from_b.rotation);
   return error;
+}
+
+double chi2_of(const PoseGraph& graph, const PoseEdge& edge) {
+  const core::Vector6d error =
+      edge_error(edge, graph.world_from_node[static_cast<std::size_t>(edge.a)],
+                 graph.world_from_node[static_cast<std::size_t>(edge.b)]);
+  return error.dot(edge.information * error);
 }
 
 EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_from_a,
@@ -79,24 +140,45 @@ EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_fro
   return jacobians;
 }
 
-PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config) {
-  std::vector<PoseBlock> blocks;
-  blocks.reserve(graph.world_from_node.size());
-  for (const auto& pose : graph.world_from_node) blocks.push_back(to_block(pose));
-
-  ceres::Problem problem;
-  for (auto& block : blocks) problem.AddParameterBlock(block.data(), 7, new PoseManifold);
-  add_edges(problem, graph, blocks, config);
-  if (blocks.empty() || graph.edges.empty()) return {};
-  problem.SetParameterBlockConstant(blocks.at(static_cast<std::size_t>(graph.fixed_node)).data());
-
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(config), &problem, &summary);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    graph.world_from_node[i] = from_block(blocks[i].data());
-    graph.world_from_node[i].rotation.normalize();
+std::vector<int> parts_of(const PoseGraph& graph) {
+  std::vector<int> parent(graph.world_from_node.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root_of = [&](int node) {
+    while (parent[static_cast<std::size_t>(node)] != node) {
+      int& above = parent[static_cast<std::size_t>(node)];
+      above = parent[static_cast<std::size_t>(above)];
+      node = above;
+    }
+    return node;
+  };
+  for (const PoseEdge& edge : graph.edges) {
+    const auto [low, high] = std::minmax({root_of(edge.a), root_of(edge.b)});
+    parent[static_cast<std::size_t>(high)] = low;
   }
-  return {summary.initial_cost, summary.final_cost, static_cast<int>(summary.iterations.size())};
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root_of(static_cast<int>(i));
+  return parent;
+}
+
+std::vector<int> held_nodes(const PoseGraph& graph) {
+  const std::vector<int> part = parts_of(graph);
+  std::vector<int> held = graph.fixed_nodes;
+  std::vector<bool> is_held(part.size(), false);
+  for (const int node : graph.fixed_nodes)
+    is_held.at(static_cast<std::size_t>(part.at(static_cast<std::size_t>(node)))) = true;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const auto lowest = static_cast<std::size_t>(part[i]);
+    if (!is_held[lowest]) held.push_back(part[i]);
+    is_held[lowest] = true;
+  }
+  return held;
+}
+
+PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config) {
+  if (config.loop_loss == LoopLoss::kGnc) return Graduation(graph, config).solve();
+  PoseGraphSummary summary = EdgeProblem(graph, config).solve(config.graph_iterations);
+  for (const PoseEdge& edge : graph.edges)
+    summary.weights.push_back(edge.is_loop ? weight_of(chi2_of(graph, edge), config) : 1.0);
+  return summary;
 }
 
 }  // namespace samewhere::optimize

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <samewhere/core/rigid3.hpp>
@@ -14,28 +15,43 @@ struct PoseEdge {
   int b = 0;
   core::Rigid3 a_from_b;
   core::Matrix6d information = core::Matrix6d::Identity();
-  bool is_loop = false;  // gets the robust loss
+  bool is_loop = false;  // may be a lie; other edges are believed
 };
+
+// Which of the six numbers of an error a planar graph uses: x, y and the turn about z.
+inline constexpr std::array<int, 3> kPlanarRows = {0, 1, 5};
 
 struct PoseGraph {
   std::vector<core::Rigid3> world_from_node;
   std::vector<PoseEdge> edges;
-  int fixed_node = 0;  // holds the whole graph in place
+  std::vector<int> fixed_nodes = {};  // they stay; see held_nodes
+  bool is_planar = false;             // every pose and edge lies in the plane z = 0, turned about z
 };
 
 struct PoseGraphSummary {
-  double initial_cost = 0.0;
+  double initial_cost = 0.0;  // half of the squared errors, in variances, of the edges believed
   double final_cost = 0.0;
   int num_iterations = 0;
+  // Per edge: 0 if it was refused, 1 if it is believed, between where it counts less. Those that
+  // are no loops have 1.
+  std::vector<double> weights;
 };
 
-// Moves the nodes to where the edges fit best. Throws ContractError for an edge to a node that is
-// not there.
+// Moves the nodes to where the edges fit best, under Config::loop_loss. With kGnc, a loop edge is
+// believed or refused as a whole: graduated non-convexity for truncated least squares (Yang,
+// Antonante, Tzoumas and Carlone, RA-L 2020), then a check of every loop edge against
+// Config::loop_chi2 in the graph as it came out, and as many solutions more as it takes until no
+// edge changes sides. kDcs: Agarwal et al., ICRA 2013. Throws ContractError for an edge to a node
+// that is not there.
 PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config);
 
 // Error of an edge, not whitened.
 core::Vector6d edge_error(const PoseEdge& edge, const core::Rigid3& world_from_a,
                           const core::Rigid3& world_from_b);
+
+// Its squared error in variances, chi-square with 6 degrees of freedom (3 in a planar graph) if
+// the edge tells the truth.
+double chi2_of(const PoseGraph& graph, const PoseEdge& edge);
 
 // Derivatives of the error by retract() at a and b.
 struct EdgeJacobians {
@@ -45,5 +61,11 @@ struct EdgeJacobians {
 
 EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_from_a,
                              const core::Rigid3& world_from_b);
+
+// For each node, the lowest of those that it is joined to by edges, itself if there is none.
+std::vector<int> parts_of(const PoseGraph& graph);
+
+// What holds the graph in place: the fixed nodes, and the lowest node of every part that has none.
+std::vector<int> held_nodes(const PoseGraph& graph);
 
 }  // namespace samewhere::optimize

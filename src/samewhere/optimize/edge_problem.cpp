@@ -1,0 +1,131 @@
+#include <samewhere/core/errors.hpp>
+#include <samewhere/optimize/edge_problem.hpp>
+
+namespace samewhere::optimize {
+namespace {
+
+class EdgeCost : public ceres::SizedCostFunction<6, 7, 7> {
+ public:
+  explicit EdgeCost(const PoseEdge& edge) : edge_(edge), whitening_(whitening(edge.information)) {}
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const core::Rigid3 world_from_a = from_block(blocks[0]);
+    const core::Rigid3 world_from_b = from_block(blocks[1]);
+    Eigen::Map<core::Vector6d> whitened(residuals);
+    whitened = whitening_ * edge_error(edge_, world_from_a, world_from_b);
+    if (jacobians == nullptr) return true;
+    const EdgeJacobians derivatives = edge_jacobians(edge_, world_from_a, world_from_b);
+    write_by_tangent<6>(whitening_ * derivatives.by_a, jacobians[0]);
+    write_by_tangent<6>(whitening_ * derivatives.by_b, jacobians[1]);
+    return true;
+  }
+
+ private:
+  PoseEdge edge_;
+  core::Matrix6d whitening_;
+};
+
+// The edge counts as much as its weight says when it is evaluated.
+class Weighted : public ceres::LossFunction {
+ public:
+  explicit Weighted(const double& weight) : weight_(weight) {}
+
+  void Evaluate(double squared, double out[3]) const override {
+    out[0] = weight_ * squared;
+    out[1] = weight_;
+    out[2] = 0.0;
+  }
+
+ private:
+  const double& weight_;
+};
+
+// Dynamic covariance scaling as a loss: beyond `trusted` its slope is (2 t / (t + s))^2.
+class DynamicScaling : public ceres::LossFunction {
+ public:
+  explicit DynamicScaling(double trusted) : trusted_(trusted) {}
+
+  void Evaluate(double squared, double out[3]) const override {
+    if (squared <= trusted_) {
+      out[0] = squared;
+      out[1] = 1.0;
+      out[2] = 0.0;
+      return;
+    }
+    const double sum = squared + trusted_;
+    const double scale = 2.0 * trusted_ / sum;
+    out[0] = trusted_ * (3.0 * squared - trusted_) / sum;
+    out[1] = scale * scale;
+    out[2] = -2.0 * scale * scale / sum;
+  }
+
+ private:
+  double trusted_;
+};
+
+// One thread and EIGEN_SPARSE: with two threads, or with CHOLMOD, the last bits differ from run to
+// run.
+ceres::Solver::Options solver_options(int max_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.num_threads = 1;
+  options.max_num_iterations = max_iterations;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
+}  // namespace
+
+EdgeProblem::EdgeProblem(PoseGraph& graph, const Config& config)
+    : graph_(graph), weights_(graph.edges.size(), 1.0) {
+  for (const auto& pose : graph.world_from_node) blocks_.push_back(to_block(pose));
+  for (auto& block : blocks_) problem_.AddParameterBlock(block.data(), 7, new PoseManifold);
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const PoseEdge& edge = graph.edges[i];
+    const auto is_node = [&](int node) {
+      return node >= 0 && node < static_cast<int>(blocks_.size());
+    };
+    core::require(is_node(edge.a) && is_node(edge.b) && edge.a != edge.b,
+                  "an edge joins two nodes of the graph");
+    problem_.AddResidualBlock(new EdgeCost(edge), loss_of(i, config),
+                              blocks_[static_cast<std::size_t>(edge.a)].data(),
+                              blocks_[static_cast<std::size_t>(edge.b)].data());
+  }
+  for (const int node : held_nodes(graph))
+    problem_.SetParameterBlockConstant(blocks_.at(static_cast<std::size_t>(node)).data());
+}
+
+ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge, const Config& config) {
+  if (!graph_.edges[edge].is_loop) return nullptr;
+  switch (config.loop_loss) {
+    case LoopLoss::kLeastSquares:
+      return nullptr;
+    case LoopLoss::kHuber:
+      return new ceres::HuberLoss(config.loop_huber);
+    case LoopLoss::kDcs:
+      return new DynamicScaling(config.loop_dcs);
+    case LoopLoss::kGnc:
+      return new Weighted(weights_[edge]);
+  }
+  return nullptr;
+}
+
+PoseGraphSummary EdgeProblem::solve(int max_iterations) {
+  if (graph_.edges.empty()) return {};
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(max_iterations), &problem_, &summary);
+  core::require(summary.IsSolutionUsable(),
+                "a pose graph of finite poses and edges has a solution");
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    graph_.world_from_node[i] = from_block(blocks_[i].data());
+    graph_.world_from_node[i].rotation.normalize();
+    blocks_[i] = to_block(graph_.world_from_node[i]);
+  }
+  return {summary.initial_cost,
+          summary.final_cost,
+          static_cast<int>(summary.iterations.size()) - 1,
+          {}};
+}
+
+}  // namespace samewhere::optimize

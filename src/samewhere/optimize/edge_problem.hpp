@@ -1,0 +1,32 @@
+#pragma once
+
+// For the files of this folder that solve pose graphs.
+
+#include <vector>
+
+#include <samewhere/optimize/pose_block.hpp>
+#include <samewhere/optimize/pose_graph.hpp>
+
+namespace samewhere::optimize {
+
+// The edges of a graph as a problem of Ceres, built once and solved with changing weights.
+class EdgeProblem {
+ public:
+  // Keeps a reference to the graph. Throws ContractError for an edge to a node that is not there.
+  EdgeProblem(PoseGraph& graph, const Config& config);
+
+  double& weight(std::size_t edge) { return weights_[edge]; }
+  const std::vector<double>& weights() const { return weights_; }
+  // Moves the graph's nodes; the costs are those under the weights of now.
+  PoseGraphSummary solve(int max_iterations);
+
+ private:
+  ceres::LossFunction* loss_of(std::size_t edge, const Config& config);
+
+  PoseGraph& graph_;
+  std::vector<double> weights_;  // per edge
+  std::vector<PoseBlock> blocks_;
+  ceres::Problem problem_;
+};
+
+}  // namespace samewhere::optimize

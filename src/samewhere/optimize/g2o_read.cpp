@@ -1,0 +1,175 @@
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/text_file.hpp>
+#include <samewhere/optimize/g2o_file.hpp>
+
+namespace samewhere::optimize {
+namespace {
+
+constexpr double kMaxNormError = 1e-2;  // of a quaternion that files round
+
+[[noreturn]] void refuse(const core::TextLine& line, const std::string& what) {
+  throw core::InputError(fmt::format("{}: {}", line.place, what));
+}
+
+// How a kind of vertex and edge is written.
+struct Kind {
+  std::string_view vertex;
+  std::string_view edge;
+  std::size_t num_pose = 0;  // numbers of a pose
+  int num_degrees = 0;
+  bool is_planar = false;
+};
+
+constexpr Kind kSpatial{"VERTEX_SE3:QUAT", "EDGE_SE3:QUAT", 7, 6, false};
+constexpr Kind kPlanar{"VERTEX_SE2", "EDGE_SE2", 3, 3, true};
+
+// A file as it is read, line by line: vertices may come after the edges that name them.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : path_(path) {
+    for (const core::TextLine& line : core::read_text_lines(path)) read(line);
+    for (const auto& [line, kind] : edges_) add_edge(line, *kind);
+    for (const auto& line : fixed_) found_.graph.fixed_nodes.push_back(node_of(line, 1));
+    if (found_.names.empty() || found_.graph.edges.empty()) {
+      throw core::InputError(
+          fmt::format("{}: holds {} vertices and {} edges, expected some of both "
+                      "(VERTEX_SE3:QUAT and EDGE_SE3:QUAT, or VERTEX_SE2 and EDGE_SE2)",
+                      path.string(), found_.names.size(), found_.graph.edges.size()));
+    }
+  }
+
+  G2oGraph take() { return std::move(found_); }
+
+ private:
+  void read(const core::TextLine& line) {
+    const std::string& type = line.words.front();
+    for (const Kind* kind : {&kSpatial, &kPlanar}) {
+      if (type == kind->vertex) return add_vertex(line, *kind);
+      if (type == kind->edge) return edges_.emplace_back(line, kind), void();
+    }
+    if (type == "FIX")
+      fixed_.push_back(line);
+    else
+      ++found_.skipped[type];
+  }
+
+  void add_vertex(const core::TextLine& line, const Kind& kind) {
+    expect(line, 2 + kind.num_pose, kind);
+    const long name = name_of(line, 1);
+    const auto node = static_cast<int>(found_.names.size());
+    if (!node_of_.emplace(name, node).second)
+      refuse(line, fmt::format("vertex {} a second time, expected once", name));
+    found_.names.push_back(name);
+    found_.graph.world_from_node.push_back(pose_of(line, 2, kind));
+  }
+
+  void add_edge(const core::TextLine& line, const Kind& kind) {
+    const auto num_entries =
+        static_cast<std::size_t>(kind.num_degrees * (kind.num_degrees + 1) / 2);
+    expect(line, 3 + kind.num_pose + num_entries, kind);
+    PoseEdge edge{node_of(line, 1), node_of(line, 2), pose_of(line, 3, kind)};
+    if (edge.a == edge.b)
+      refuse(line, fmt::format("joins {} to itself, expected two vertices", line.words[1]));
+    edge.information = information_of(line, edge, kind);
+    edge.is_loop = std::abs(name_of(line, 2) - name_of(line, 1)) != 1;
+    found_.graph.edges.push_back(edge);
+  }
+
+  // The number of words, and that a file is either planar or not.
+  void expect(const core::TextLine& line, std::size_t num_words, const Kind& kind) {
+    if (line.words.size() != num_words) {
+      refuse(line, fmt::format("found {} values, expected {} of {}", line.words.size() - 1,
+                               num_words - 1, line.words.front()));
+    }
+    if (!kind_) kind_ = &kind;
+    if (kind_ != &kind) {
+      refuse(line, fmt::format("found {}, expected all of one kind, {} and {} as above",
+                               line.words.front(), kind_->vertex, kind_->edge));
+    }
+    found_.graph.is_planar = kind.is_planar;
+  }
+
+  static long name_of(const core::TextLine& line, std::size_t column) {
+    if (column >= line.words.size()) refuse(line, "found no number, expected that of a vertex");
+    const std::string& word = line.words[column];
+    long name = 0;
+    const char* const end = word.data() + word.size();
+    const auto [last, error] = std::from_chars(word.data(), end, name);
+    if (error != std::errc{} || last != end || name < 0) {
+      refuse(line, fmt::format("found '{}', expected the number of a vertex, 0 or more",
+                               word.substr(0, 40)));
+    }
+    return name;
+  }
+
+  int node_of(const core::TextLine& line, std::size_t column) const {
+    const long name = name_of(line, column);
+    const auto node = node_of_.find(name);
+    if (node == node_of_.end())
+      refuse(line, fmt::format("names vertex {}, expected one that the file has", name));
+    return node->second;
+  }
+
+  static core::Rigid3 pose_of(const core::TextLine& line, std::size_t first, const Kind& kind) {
+    std::vector<double> v;
+    for (std::size_t i = 0; i < kind.num_pose; ++i)
+      v.push_back(core::finite_number(line, first + i));
+    if (kind.is_planar) return {core::exp_so3({0.0, 0.0, v[2]}), {v[0], v[1], 0.0}};
+    Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+    if (std::abs(rotation.norm() - 1.0) > kMaxNormError)
+      refuse(line, fmt::format("quaternion of norm {:.4g}, expected 1", rotation.norm()));
+    rotation.normalize();
+    return {rotation, {v[0], v[1], v[2]}};
+  }
+
+  static core::Matrix6d information_of(const core::TextLine& line, const PoseEdge& edge,
+                                       const Kind& kind) {
+    Eigen::MatrixXd given(kind.num_degrees, kind.num_degrees);
+    std::size_t column = 3 + kind.num_pose;
+    for (int row = 0; row < kind.num_degrees; ++row) {
+      for (int i = row; i < kind.num_degrees; ++i)
+        given(row, i) = given(i, row) = core::finite_number(line, column++);
+    }
+    if (Eigen::LLT<Eigen::MatrixXd>(given).info() != Eigen::Success)
+      refuse(line, "an information that is not positive definite, expected one that is");
+    return kind.is_planar ? lifted(given, edge) : turned(given, edge);
+  }
+
+  // For our error in place of g2o's, see g2o_information.
+  static core::Matrix6d turned(const core::Matrix6d& given, const PoseEdge& edge) {
+    core::Matrix6d g2o_from_ours = core::Matrix6d::Zero();
+    g2o_from_ours.topLeftCorner<3, 3>() = edge.a_from_b.rotation.conjugate().toRotationMatrix();
+    g2o_from_ours.bottomRightCorner<3, 3>() = 0.5 * Eigen::Matrix3d::Identity();
+    return g2o_from_ours.transpose() * given * g2o_from_ours;
+  }
+
+  // What holds the pose in the plane is as strong as the rest: its error is always 0.
+  static core::Matrix6d lifted(const Eigen::Matrix3d& given, const PoseEdge& edge) {
+    Eigen::Matrix3d g2o_from_ours = edge.a_from_b.rotation.conjugate().toRotationMatrix();
+    const Eigen::Matrix3d planar = g2o_from_ours.transpose() * given * g2o_from_ours;
+    core::Matrix6d full = given.trace() / 3.0 * core::Matrix6d::Identity();
+    full(kPlanarRows, kPlanarRows) = planar;
+    return full;
+  }
+
+  std::filesystem::path path_;
+  G2oGraph found_;
+  std::map<long, int> node_of_;
+  std::vector<std::pair<core::TextLine, const Kind*>> edges_;
+  std::vector<core::TextLine> fixed_;
+  const Kind* kind_ = nullptr;
+};
+
+}  // namespace
+
+G2oGraph read_g2o(const std::filesystem::path& path) { return Reader(path).take(); }
+
+}  // namespace samewhere::optimize

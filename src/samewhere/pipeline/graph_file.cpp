@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <samewhere/core/file.hpp>
+#include <samewhere/optimize/g2o_file.hpp>
+#include <samewhere/pipeline/graph_file.hpp>
+#include <samewhere/report/graph_plan.hpp>
+#include <samewhere/report/table.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+constexpr double kBelieved = 0.5;  // of a loop's weight
+
+std::size_t num_loops(const optimize::PoseGraph& graph) {
+  return static_cast<std::size_t>(std::count_if(graph.edges.begin(), graph.edges.end(),
+                                                [](const auto& edge) { return edge.is_loop; }));
+}
+
+std::size_t num_parts(const optimize::PoseGraph& graph) {
+  const std::vector<int> parts = optimize::parts_of(graph);
+  return std::set<int>(parts.begin(), parts.end()).size();
+}
+
+std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
+  const optimize::PoseGraph& graph = file.graph;
+  const std::size_t loops = num_loops(graph);
+  std::vector<report::Figure> figures = {
+      {"poses", fmt::format("{} in {}", graph.world_from_node.size(),
+                            graph.is_planar ? "the plane" : "space")},
+      {"edges", fmt::format("{}: {} from a pose to the next, {} loops", graph.edges.size(),
+                            graph.edges.size() - loops, loops)}};
+  if (const std::size_t parts = num_parts(graph); parts > 1)
+    figures.push_back({"parts", fmt::format("{}, each solved by itself", parts)});
+  for (const auto& [type, count] : file.skipped)
+    figures.push_back({"lines left out", fmt::format("{} of unknown type {}", count, type)});
+  return figures;
+}
+
+std::vector<report::Figure> figures_of_solution(const optimize::PoseGraph& graph,
+                                                const optimize::PoseGraphSummary& summary,
+                                                double seconds) {
+  std::size_t refused = 0;
+  for (const double weight : summary.weights) refused += weight < kBelieved ? 1 : 0;
+  return {
+      {"cost before / after", fmt::format("{:.6g} / {:.6g} (half of the squared errors believed)",
+                                          summary.initial_cost, summary.final_cost)},
+      {"loops believed / refused", fmt::format("{} / {}", num_loops(graph) - refused, refused)},
+      {"iterations", std::to_string(summary.num_iterations)},
+      {"time", fmt::format("{:.2f} s", seconds)}};
+}
+
+std::string loops_csv(const optimize::G2oGraph& file, const std::vector<double>& weights) {
+  report::Table table{{"a", "b", "squared_error", "weight"}, {}};
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const optimize::PoseEdge& edge = file.graph.edges[i];
+    if (!edge.is_loop) continue;
+    table.rows.push_back({std::to_string(file.names[static_cast<std::size_t>(edge.a)]),
+                          std::to_string(file.names[static_cast<std::size_t>(edge.b)]),
+                          fmt::format("{:.6g}", chi2_of(file.graph, edge)),
+                          fmt::format("{:.4g}", weights[i])});
+  }
+  return report::as_csv(table);
+}
+
+report::GraphRecord record_of(const optimize::PoseGraph& graph, std::vector<core::Rigid3> before,
+                              const std::vector<double>& weights) {
+  report::GraphRecord record{.before = std::move(before), .after = graph.world_from_node};
+  record.is_planar = graph.is_planar;
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const optimize::PoseEdge& edge = graph.edges[i];
+    auto& pairs = !edge.is_loop             ? record.path
+                  : weights[i] >= kBelieved ? record.believed
+                                            : record.refused;
+    pairs.emplace_back(edge.a, edge.b);
+  }
+  return record;
+}
+
+}  // namespace
+
+std::vector<report::Figure> optimize_graph(const std::filesystem::path& file,
+                                           const optimize::Config& config,
+                                           const GraphExports& wanted) {
+  optimize::G2oGraph read = optimize::read_g2o(file);
+  std::vector<core::Rigid3> before = read.graph.world_from_node;
+  const auto start = std::chrono::steady_clock::now();
+  const optimize::PoseGraphSummary summary = solve_pose_graph(read.graph, config);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+
+  if (!wanted.g2o.empty()) core::write_file(wanted.g2o, g2o_text(read.graph, read.names));
+  if (!wanted.loops.empty()) core::write_file(wanted.loops, loops_csv(read, summary.weights));
+  if (!wanted.svg.empty()) {
+    report::GraphRecord record = record_of(read.graph, std::move(before), summary.weights);
+    record.title = file.filename().string();
+    core::write_file(wanted.svg, report::graph_plan_svg(record));
+  }
+  std::vector<report::Figure> figures = figures_of_graph(read);
+  for (auto& figure : figures_of_solution(read.graph, summary, seconds.count()))
+    figures.push_back(std::move(figure));
+  return figures;
+}
+
+}  // namespace samewhere::pipeline
