@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <samewhere/optimize/pose_graph.hpp>
+
+namespace samewhere::bench {
+
+// A pose graph whose true poses are known. Its nodes stand where the odometry put them.
+struct GraphWorld {
+  optimize::PoseGraph graph;
+  std::vector<core::Rigid3> world_from_node;  // the truth
+  std::vector<bool> is_lie;                   // per edge
+};
+
+enum class GraphKind {
+  kSphere,  // 50 laps of 50 poses around a ball of 50 m, each pose joined to those of the lap below
+  kTorus,   // 100 laps of 50 poses around a ring, likewise
+  kGrid,    // 3500 steps of 1 m along the streets of a town, joined where it crosses itself; planar
+  kHalls    // 20 rounds of 100 m through the same halls, joined to the round before; planar
+};
+
+std::string_view name_of(GraphKind kind);
+
+// Standard deviations of the noise of every edge; the edges' informations are honest.
+struct GraphNoise {
+  double sigma_m = 0.05;
+  double sigma_rad = 0.02;
+};
+
+GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t seed);
+
+// Replaces a share of the loop edges, each by one to a random other node.
+void lie_at_random(GraphWorld& world, double share, std::uint64_t seed);
+
+// All loops of one stretch of the path, a share of all loops, say that it lies elsewhere by the
+// same 3 m: they agree with each other and with the odometry between them.
+void lie_together(GraphWorld& world, double share, std::uint64_t seed);
+
+// RMSE of the nodes' positions after the best rigid alignment, m.
+double ate_m(const GraphWorld& world);
+
+}  // namespace samewhere::bench

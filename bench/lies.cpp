@@ -1,0 +1,115 @@
+// lies: what is left of a map when some of its loops are wrong?
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "graph_world.hpp"
+#include "program.hpp"
+#include <samewhere/core/median.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+struct Loss {
+  std::string name;
+  optimize::LoopLoss loss;
+};
+
+const Loss kLosses[] = {{"least squares", optimize::LoopLoss::kLeastSquares},
+                        {"Huber", optimize::LoopLoss::kHuber},
+                        {"dynamic covariance scaling", optimize::LoopLoss::kDcs},
+                        {"gnc (default)", optimize::LoopLoss::kGnc}};
+
+struct Findings {
+  std::vector<double> ate_m;
+  int num_lies = 0;
+  int num_believed_lies = 0;
+  int num_true = 0;
+  int num_refused_true = 0;
+};
+
+void solve(GraphWorld world, optimize::LoopLoss loss, Findings& findings) {
+  const optimize::PoseGraphSummary summary = solve_pose_graph(world.graph, {.loop_loss = loss});
+  findings.ate_m.push_back(ate_m(world));
+  for (std::size_t i = 0; i < world.is_lie.size(); ++i) {
+    if (!world.graph.edges[i].is_loop) continue;
+    const bool is_believed = summary.weights[i] >= 0.5;
+    findings.num_lies += world.is_lie[i];
+    findings.num_true += !world.is_lie[i];
+    findings.num_believed_lies += world.is_lie[i] && is_believed;
+    findings.num_refused_true += !world.is_lie[i] && !is_believed;
+  }
+}
+
+// The loops that do not lie, alone: nobody can do better.
+GraphWorld without_lies(const GraphWorld& world) {
+  GraphWorld rest = world;
+  rest.graph.edges.clear();
+  for (std::size_t i = 0; i < world.is_lie.size(); ++i)
+    if (!world.is_lie[i]) rest.graph.edges.push_back(world.graph.edges[i]);
+  rest.is_lie.assign(rest.graph.edges.size(), false);
+  return rest;
+}
+
+struct Settings {
+  int num_seeds = 3;
+  std::string csv_file;
+};
+
+using Lie = void (*)(GraphWorld&, double, std::uint64_t);
+
+void add_rows(GraphKind kind, const std::string& lie_name, Lie lie, double share,
+              const Settings& settings, Table& table) {
+  std::vector<Findings> by_loss(std::size(kLosses));
+  Findings best;
+  for (int seed = 1000; seed < 1000 + settings.num_seeds; ++seed) {
+    GraphWorld world = make_graph(kind, {}, static_cast<std::uint64_t>(seed));
+    lie(world, share, static_cast<std::uint64_t>(seed));
+    solve(without_lies(world), optimize::LoopLoss::kLeastSquares, best);
+    for (std::size_t i = 0; i < by_loss.size(); ++i) solve(world, kLosses[i].loss, by_loss[i]);
+  }
+  for (std::size_t i = 0; i < by_loss.size(); ++i) {
+    const Findings& found = by_loss[i];
+    table.rows.push_back(
+        {std::string(name_of(kind)), lie_name, fmt::format("{:.0f} %", 100 * share),
+         kLosses[i].name, fmt::format("{:.3f}", *core::median(best.ate_m)),
+         fmt::format("{:.3f}", *core::median(found.ate_m)),
+         fmt::format("{:.3f}", *std::max_element(found.ate_m.begin(), found.ate_m.end())),
+         fmt::format("{} of {}", found.num_believed_lies, found.num_lies),
+         fmt::format("{} of {}", found.num_refused_true, found.num_true)});
+  }
+}
+
+void measure(const Settings& settings) {
+  Table table{{"graph", "lies", "share", "loss", "ATE m without the lies", "ATE m", "worst",
+               "lies believed", "true refused"},
+              {}};
+  for (const auto kind : {GraphKind::kGrid, GraphKind::kHalls, GraphKind::kSphere}) {
+    add_rows(kind, "none", lie_at_random, 0.0, settings, table);
+    for (const double share : {0.01, 0.05, 0.2, 0.5})
+      add_rows(kind, "random", lie_at_random, share, settings, table);
+    for (const double share : {0.01, 0.05, 0.2, 0.5})
+      add_rows(kind, "consistent", lie_together, share, settings, table);
+  }
+  publish(table, settings.csv_file);
+}
+
+std::function<void()> set_up(CLI::App& app) {
+  const auto settings = std::make_shared<Settings>();
+  app.name("lies");
+  app.description("Pose graphs some of whose loops are wrong, under every loss.");
+  app.add_option("--seeds", settings->num_seeds, "walks of each kind")->check(CLI::Range(1, 100));
+  app.add_option("--csv", settings->csv_file, "write the table to this file, too");
+  return [settings] { measure(*settings); };
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
+}
