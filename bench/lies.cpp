@@ -10,6 +10,7 @@
 #include "graph_world.hpp"
 #include "program.hpp"
 #include <samewhere/core/median.hpp>
+#include <samewhere/core/progress.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -62,20 +63,26 @@ struct Settings {
 
 using Lie = void (*)(GraphWorld&, double, std::uint64_t);
 
-void add_rows(GraphKind kind, const std::string& lie_name, Lie lie, double share,
-              const Settings& settings, Table& table) {
+struct Case {
+  GraphKind kind;
+  std::string lie_name;
+  Lie lie;
+  double share;
+};
+
+void add_rows(const Case& one, const Settings& settings, Table& table) {
   std::vector<Findings> by_loss(std::size(kLosses));
   Findings best;
   for (int seed = 1000; seed < 1000 + settings.num_seeds; ++seed) {
-    GraphWorld world = make_graph(kind, {}, static_cast<std::uint64_t>(seed));
-    lie(world, share, static_cast<std::uint64_t>(seed));
+    GraphWorld world = make_graph(one.kind, {}, static_cast<std::uint64_t>(seed));
+    one.lie(world, one.share, static_cast<std::uint64_t>(seed));
     solve(without_lies(world), optimize::LoopLoss::kLeastSquares, best);
     for (std::size_t i = 0; i < by_loss.size(); ++i) solve(world, kLosses[i].loss, by_loss[i]);
   }
   for (std::size_t i = 0; i < by_loss.size(); ++i) {
     const Findings& found = by_loss[i];
     table.rows.push_back(
-        {std::string(name_of(kind)), lie_name, fmt::format("{:.0f} %", 100 * share),
+        {std::string(name_of(one.kind)), one.lie_name, fmt::format("{:.0f} %", 100 * one.share),
          kLosses[i].name, fmt::format("{:.3f}", *core::median(best.ate_m)),
          fmt::format("{:.3f}", *core::median(found.ate_m)),
          fmt::format("{:.3f}", *std::max_element(found.ate_m.begin(), found.ate_m.end())),
@@ -84,17 +91,29 @@ void add_rows(GraphKind kind, const std::string& lie_name, Lie lie, double share
   }
 }
 
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const auto kind : {GraphKind::kHalls, GraphKind::kGrid}) {
+    all.push_back({kind, "none", lie_at_random, 0.0});
+    for (const double share : {0.01, 0.05, 0.2, 0.5})
+      all.push_back({kind, "random", lie_at_random, share});
+    for (const double share : {0.01, 0.05, 0.2, 0.5})
+      all.push_back({kind, "consistent", lie_together, share});
+  }
+  return all;
+}
+
 void measure(const Settings& settings) {
   Table table{{"graph", "lies", "share", "loss", "ATE m without the lies", "ATE m", "worst",
                "lies believed", "true refused"},
               {}};
-  for (const auto kind : {GraphKind::kGrid, GraphKind::kHalls, GraphKind::kSphere}) {
-    add_rows(kind, "none", lie_at_random, 0.0, settings, table);
-    for (const double share : {0.01, 0.05, 0.2, 0.5})
-      add_rows(kind, "random", lie_at_random, share, settings, table);
-    for (const double share : {0.01, 0.05, 0.2, 0.5})
-      add_rows(kind, "consistent", lie_together, share, settings, table);
+  const std::vector<Case> all = cases();
+  core::Progress progress("cases", static_cast<int>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    add_rows(all[i], settings, table);
+    progress.update(static_cast<int>(i) + 1);
   }
+  progress.finish();
   publish(table, settings.csv_file);
 }
 

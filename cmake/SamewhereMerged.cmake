@@ -28,6 +28,8 @@ endif()
 function(samewhere_merge TARGET)
   if(SAMEWHERE_MERGED)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    # a file that is included in another is taken for a header, which should have no types of its own
+    target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     target_precompile_headers(${TARGET} REUSE_FROM samewhere_precompiled)
   endif()
 endfunction()

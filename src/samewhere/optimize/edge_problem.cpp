@@ -65,7 +65,7 @@ class DynamicScaling : public ceres::LossFunction {
 
 // One thread and EIGEN_SPARSE: with two threads, or with CHOLMOD, the last bits differ from run to
 // run.
-ceres::Solver::Options solver_options(int max_iterations) {
+ceres::Solver::Options graph_solver_options(int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
@@ -114,7 +114,7 @@ ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge, const Config& config
 PoseGraphSummary EdgeProblem::solve(int max_iterations) {
   if (graph_.edges.empty()) return {};
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(max_iterations), &problem_, &summary);
+  ceres::Solve(graph_solver_options(max_iterations), &problem_, &summary);
   core::require(summary.IsSolutionUsable(),
                 "a pose graph of finite poses and edges has a solution");
   for (std::size_t i = 0; i < blocks_.size(); ++i) {

@@ -98,7 +98,7 @@ void read_source(const OpenSource& source, bool is_held_back, const ReadingProgr
   images.sources.push_back(count);
 }
 
-std::string sha256_of(const ImageSet& images) {
+std::string digest_of(const ImageSet& images) {
   Sha256 sha;
   for (const SourceCount& source : images.sources) {
     sha.add(fmt::format("{}{};", source.num_images, source.is_held_back ? " held back" : ""));
@@ -213,7 +213,7 @@ ImageSet read_images(std::span<const std::string> sources, std::span<const std::
     throw core::InputError("--images: one image in all, expected at least 2 to learn from");
   }
   for (const std::string& name : validate) read(name, true);
-  images.sha256 = sha256_of(images);
+  images.sha256 = digest_of(images);
   return images;
 }
 

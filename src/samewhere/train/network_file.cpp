@@ -17,7 +17,7 @@
 namespace samewhere::train {
 namespace {
 
-using json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kMaxExportError = 1e-5;
 
@@ -26,8 +26,8 @@ constexpr const char* kPreparation =
     "divided by 255";
 
 // "key: value" lines.
-json settings_as_json(const Config& config) {
-  json settings;
+OrderedJson settings_as_json(const Config& config) {
+  OrderedJson settings;
   std::istringstream lines(core::config_as_yaml(config));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t colon = line.find(": ");
@@ -36,8 +36,8 @@ json settings_as_json(const Config& config) {
   return settings;
 }
 
-json layers_as_json(const NetworkPlan& plan) {
-  json layers = json::array();
+OrderedJson layers_as_json(const NetworkPlan& plan) {
+  OrderedJson layers = OrderedJson::array();
   for (std::size_t i = 0; i < plan.convolutions.size(); ++i) {
     const ConvolutionPlan& convolution = plan.convolutions[i];
     layers.push_back(
@@ -51,8 +51,8 @@ json layers_as_json(const NetworkPlan& plan) {
   return layers;
 }
 
-json sources_as_json(const ImageSet& images, bool is_held_back) {
-  json sources = json::array();
+OrderedJson sources_as_json(const ImageSet& images, bool is_held_back) {
+  OrderedJson sources = OrderedJson::array();
   for (const SourceCount& source : images.sources) {
     if (source.is_held_back != is_held_back) continue;
     sources.push_back({{"source", source.source},
@@ -62,8 +62,8 @@ json sources_as_json(const ImageSet& images, bool is_held_back) {
   return sources;
 }
 
-json images_as_json(const ImageSet& images, const Split& split) {
-  json validation_sources = sources_as_json(images, true);
+OrderedJson images_as_json(const ImageSet& images, const Split& split) {
+  OrderedJson validation_sources = sources_as_json(images, true);
   if (validation_sources.empty()) validation_sources = "blocks of the sources";
   return {{"sources", sources_as_json(images, false)},
           {"validation_sources", validation_sources},
@@ -72,8 +72,8 @@ json images_as_json(const ImageSet& images, const Split& split) {
           {"sha256_of_prepared_images", images.sha256}};
 }
 
-json epochs_as_json(const std::vector<EpochFigures>& history) {
-  json epochs = json::array();
+OrderedJson epochs_as_json(const std::vector<EpochFigures>& history) {
+  OrderedJson epochs = OrderedJson::array();
   for (const EpochFigures& epoch : history) {
     epochs.push_back({{"epoch", epoch.epoch},
                       {"training_error", epoch.training_error},
@@ -85,28 +85,28 @@ json epochs_as_json(const std::vector<EpochFigures>& history) {
 std::string card_text(const Job& job, const ImageSet& images, const Trainer& trainer,
                       const Quality& quality, const std::string& bytes) {
   const NetworkPlan& plan = trainer.plan();
-  const json card = {{"network", job.out.filename().string()},
-                     {"sha256", sha256_of(bytes)},
-                     {"num_bytes", bytes.size()},
-                     {"command", job.command},
-                     {"version", job.version},
-                     {"commits", trainer.commits()},
-                     {"settings", settings_as_json(job.config)},
-                     {"images", images_as_json(images, trainer.split())},
-                     {"input",
-                      {{"name", "image"},
-                       {"shape", {1, 1, plan.input_px.height, plan.input_px.width}},
-                       {"preparation", kPreparation}}},
-                     {"output", {{"name", "code"}, {"shape", {1, plan.code_size}}}},
-                     {"layers", layers_as_json(plan)},
-                     {"best_epoch", quality.best.epoch},
-                     {"validation",
-                      {{"error", quality.best.validation_error},
-                       {"recognition", quality.recognition},
-                       {"recognition_of_hog", quality.recognition_of_hog}}},
-                     {"epochs", epochs_as_json(trainer.history())}};
+  const OrderedJson card = {{"network", job.out.filename().string()},
+                            {"sha256", sha256_of(bytes)},
+                            {"num_bytes", bytes.size()},
+                            {"command", job.command},
+                            {"version", job.version},
+                            {"commits", trainer.commits()},
+                            {"settings", settings_as_json(job.config)},
+                            {"images", images_as_json(images, trainer.split())},
+                            {"input",
+                             {{"name", "image"},
+                              {"shape", {1, 1, plan.input_px.height, plan.input_px.width}},
+                              {"preparation", kPreparation}}},
+                            {"output", {{"name", "code"}, {"shape", {1, plan.code_size}}}},
+                            {"layers", layers_as_json(plan)},
+                            {"best_epoch", quality.best.epoch},
+                            {"validation",
+                             {{"error", quality.best.validation_error},
+                              {"recognition", quality.recognition},
+                              {"recognition_of_hog", quality.recognition_of_hog}}},
+                            {"epochs", epochs_as_json(trainer.history())}};
   // names of files may hold any bytes
-  return card.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return card.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 // In shares of the largest number of the trained code; no finite number if either is not.
