@@ -63,6 +63,57 @@ class DynamicScaling : public ceres::LossFunction {
   double trusted_;
 };
 
+// The steps of a pose that stays in the plane, for blocks whose derivatives are laid out as
+// PoseManifold has it.
+class PlanarManifold : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 3; }
+
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    const core::Vector6d full = in_space(delta);
+    return whole_.Plus(x, full.data(), x_plus_delta);
+  }
+
+  bool PlusJacobian(const double* /*x*/, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 7, 3, Eigen::RowMajor>> by_step(jacobian);
+    by_step.setZero();
+    for (std::size_t i = 0; i < kPlanarRows.size(); ++i)
+      by_step(kPlanarRows[i], static_cast<Eigen::Index>(i)) = 1.0;
+    return true;
+  }
+
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
+    core::Vector6d full;
+    if (!whole_.Minus(y, x, full.data())) return false;
+    for (std::size_t i = 0; i < kPlanarRows.size(); ++i) y_minus_x[i] = full(kPlanarRows[i]);
+    return true;
+  }
+
+  bool MinusJacobian(const double* /*x*/, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 3, 7, Eigen::RowMajor>> by_pose(jacobian);
+    by_pose.setZero();
+    for (std::size_t i = 0; i < kPlanarRows.size(); ++i)
+      by_pose(static_cast<Eigen::Index>(i), kPlanarRows[i]) = 1.0;
+    return true;
+  }
+
+ private:
+  static core::Vector6d in_space(const double* delta) {
+    core::Vector6d full = core::Vector6d::Zero();
+    for (std::size_t i = 0; i < kPlanarRows.size(); ++i) full(kPlanarRows[i]) = delta[i];
+    return full;
+  }
+
+  PoseManifold whole_;
+};
+
+ceres::Problem::Options problem_options() {
+  ceres::Problem::Options options;
+  options.enable_fast_removal = true;
+  return options;
+}
+
 // One thread and EIGEN_SPARSE: with two threads, or with CHOLMOD, the last bits differ from run to
 // run.
 ceres::Solver::Options graph_solver_options(int max_iterations) {
@@ -78,41 +129,63 @@ ceres::Solver::Options graph_solver_options(int max_iterations) {
 }  // namespace
 
 EdgeProblem::EdgeProblem(PoseGraph& graph, const Config& config)
-    : graph_(graph), weights_(graph.edges.size(), 1.0) {
-  for (const auto& pose : graph.world_from_node) blocks_.push_back(to_block(pose));
-  for (auto& block : blocks_) problem_.AddParameterBlock(block.data(), 7, new PoseManifold);
-  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
-    const PoseEdge& edge = graph.edges[i];
+    : graph_(graph),
+      config_(config),
+      weights_(graph.edges.size(), 1.0),
+      problem_(problem_options()),
+      residuals_(graph.edges.size(), nullptr) {
+  for (const auto& edge : graph.edges) {
     const auto is_node = [&](int node) {
-      return node >= 0 && node < static_cast<int>(blocks_.size());
+      return node >= 0 && node < static_cast<int>(graph.world_from_node.size());
     };
     core::require(is_node(edge.a) && is_node(edge.b) && edge.a != edge.b,
                   "an edge joins two nodes of the graph");
-    problem_.AddResidualBlock(new EdgeCost(edge), loss_of(i, config),
-                              blocks_[static_cast<std::size_t>(edge.a)].data(),
-                              blocks_[static_cast<std::size_t>(edge.b)].data());
+  }
+  for (const auto& pose : graph.world_from_node) blocks_.push_back(to_block(pose));
+  for (auto& block : blocks_) {
+    ceres::Manifold* const manifold = graph.is_planar
+                                          ? static_cast<ceres::Manifold*>(new PlanarManifold)
+                                          : static_cast<ceres::Manifold*>(new PoseManifold);
+    problem_.AddParameterBlock(block.data(), 7, manifold);
   }
   for (const int node : held_nodes(graph))
     problem_.SetParameterBlockConstant(blocks_.at(static_cast<std::size_t>(node)).data());
 }
 
-ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge, const Config& config) {
+ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge) const {
   if (!graph_.edges[edge].is_loop) return nullptr;
-  switch (config.loop_loss) {
+  switch (config_.loop_loss) {
     case LoopLoss::kLeastSquares:
       return nullptr;
     case LoopLoss::kHuber:
-      return new ceres::HuberLoss(config.loop_huber);
+      return new ceres::HuberLoss(config_.loop_huber);
     case LoopLoss::kDcs:
-      return new DynamicScaling(config.loop_dcs);
+      return new DynamicScaling(config_.loop_dcs);
     case LoopLoss::kGnc:
       return new Weighted(weights_[edge]);
   }
   return nullptr;
 }
 
+void EdgeProblem::update_edges() {
+  for (std::size_t i = 0; i < residuals_.size(); ++i) {
+    const bool is_wanted = weights_[i] > 0.0;
+    if (is_wanted == (residuals_[i] != nullptr)) continue;
+    if (is_wanted) {
+      const PoseEdge& edge = graph_.edges[i];
+      residuals_[i] = problem_.AddResidualBlock(new EdgeCost(edge), loss_of(i),
+                                                blocks_[static_cast<std::size_t>(edge.a)].data(),
+                                                blocks_[static_cast<std::size_t>(edge.b)].data());
+    } else {
+      problem_.RemoveResidualBlock(residuals_[i]);
+      residuals_[i] = nullptr;
+    }
+  }
+}
+
 PoseGraphSummary EdgeProblem::solve(int max_iterations) {
   if (graph_.edges.empty()) return {};
+  update_edges();
   ceres::Solver::Summary summary;
   ceres::Solve(graph_solver_options(max_iterations), &problem_, &summary);
   core::require(summary.IsSolutionUsable(),

@@ -9,7 +9,9 @@
 
 namespace samewhere::optimize {
 
-// The edges of a graph as a problem of Ceres, built once and solved with changing weights.
+// The edges of a graph as a problem of Ceres, built once and solved with changing weights. An edge
+// without weight is none of Ceres's business: a wrong loop joins what is far apart, and solving
+// takes the longer the more of these there are.
 class EdgeProblem {
  public:
   // Keeps a reference to the graph. Throws ContractError for an edge to a node that is not there.
@@ -21,12 +23,15 @@ class EdgeProblem {
   PoseGraphSummary solve(int max_iterations);
 
  private:
-  ceres::LossFunction* loss_of(std::size_t edge, const Config& config);
+  ceres::LossFunction* loss_of(std::size_t edge) const;
+  void update_edges();
 
   PoseGraph& graph_;
+  Config config_;
   std::vector<double> weights_;  // per edge
   std::vector<PoseBlock> blocks_;
   ceres::Problem problem_;
+  std::vector<ceres::ResidualBlockId> residuals_;  // per edge; none: without weight
 };
 
 }  // namespace samewhere::optimize
