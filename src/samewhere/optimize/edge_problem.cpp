@@ -183,6 +183,10 @@ void EdgeProblem::update_edges() {
   }
 }
 
+void EdgeProblem::start_from_graph() {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i] = to_block(graph_.world_from_node[i]);
+}
+
 PoseGraphSummary EdgeProblem::solve(int max_iterations) {
   if (graph_.edges.empty()) return {};
   update_edges();

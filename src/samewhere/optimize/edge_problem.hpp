@@ -19,6 +19,8 @@ class EdgeProblem {
 
   double& weight(std::size_t edge) { return weights_[edge]; }
   const std::vector<double>& weights() const { return weights_; }
+  // The graph's nodes were moved by somebody else.
+  void start_from_graph();
   // Moves the graph's nodes; the costs are those under the weights of now.
   PoseGraphSummary solve(int max_iterations);
 

@@ -9,10 +9,11 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr double kGrowth = 1.4;                 // of the control parameter from round to round
-constexpr int kMaxRounds = 100;                 // the parameter has grown by 4e14
-constexpr int kMaxChecks = 10;                  // of sides changed after the rounds
-constexpr double kPlanarShare = 11.34 / 16.81;  // chi-square 99 %: 3 degrees of freedom for 6
+constexpr double kGrowth = 1.4;  // of the control parameter from round to round
+constexpr int kMaxRounds = 100;  // the parameter has grown by 4e14
+constexpr double kReaches[] = {3000.0, 300.0, 30.0};  // of the limit, see call_back
+constexpr int kMaxChecks = 10;                        // of sides changed after the rounds
+constexpr double kPlanarShare = 11.34 / 16.81;        // chi-square 99 %: 3 degrees of freedom for 6
 
 // Graduated non-convexity over the loop edges of a graph.
 class Graduation {
@@ -28,8 +29,12 @@ class Graduation {
 
   PoseGraphSummary solve() {
     PoseGraphSummary summary = problem_.solve(config_.graph_iterations);
-    graduate(summary);
-    settle(summary);
+    const double worst = worst_chi2();
+    if (worst > limit_) {
+      graduate(limit_ / (2.0 * worst - limit_), summary);
+      settle(summary);
+      for (const double reach : kReaches) call_back(reach, summary);
+    }
     summary.weights = problem_.weights();
     return summary;
   }
@@ -41,15 +46,46 @@ class Graduation {
     summary.num_iterations += found.num_iterations;
   }
 
-  // From nearly convex, where all edges count, to truncated least squares.
-  void graduate(PoseGraphSummary& summary) {
+  double worst_chi2() const {
     double worst = 0.0;
     for (const std::size_t loop : loops_)
       worst = std::max(worst, chi2_of(graph_, graph_.edges[loop]));
-    if (worst <= limit_) return;
-    double control = limit_ / (2.0 * worst - limit_);
+    return worst;
+  }
+
+  // What truncated least squares minimises.
+  double truncated_cost() const {
+    double cost = 0.0;
+    for (const PoseEdge& edge : graph_.edges) {
+      const double squared = chi2_of(graph_, edge);
+      cost += edge.is_loop ? std::min(squared, limit_) : squared;
+    }
+    return cost;
+  }
+
+  // To truncated least squares, from where edges beyond 1 / control of the limit have no say: the
+  // smaller, the more convex.
+  void graduate(double control, PoseGraphSummary& summary) {
     for (int round = 0; round < kMaxRounds && !weigh(control); ++round, control *= kGrowth)
       go_on(config_.gnc_iterations, summary);
+  }
+
+  // Lies that were believed at first may have left a stretch of the path so far from where it is
+  // that none of its loops fits any more. Once they are out, what fits no worse than `reach` times
+  // the limit is asked again; kept if it makes the whole fit better.
+  void call_back(double reach, PoseGraphSummary& summary) {
+    const std::vector<core::Rigid3> poses = graph_.world_from_node;
+    const std::vector<double> weights = problem_.weights();
+    const double cost = truncated_cost();
+    graduate(1.0 / reach, summary);
+    settle(summary);
+    if (truncated_cost() >= cost) go_back(poses, weights);
+  }
+
+  void go_back(const std::vector<core::Rigid3>& poses, const std::vector<double>& weights) {
+    graph_.world_from_node = poses;
+    for (const std::size_t loop : loops_) problem_.weight(loop) = weights[loop];
+    problem_.start_from_graph();
   }
 
   // Whether every weight is 0 or 1.

@@ -41,8 +41,8 @@ struct PoseGraphSummary {
 // believed or refused as a whole: graduated non-convexity for truncated least squares (Yang,
 // Antonante, Tzoumas and Carlone, RA-L 2020), then a check of every loop edge against
 // Config::loop_chi2 in the graph as it came out, and as many solutions more as it takes until no
-// edge changes sides. kDcs: Agarwal et al., ICRA 2013. Throws ContractError for an edge to a node
-// that is not there.
+// edge changes sides; what was refused is asked again three times, from nearer and nearer. kDcs:
+// Agarwal et al., ICRA 2013. Throws ContractError for an edge to a node that is not there.
 PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config);
 
 // Error of an edge, not whitened.
