@@ -1,6 +1,5 @@
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -34,7 +33,7 @@ constexpr Kind kPlanar{"VERTEX_SE2", "EDGE_SE2", 3, 3, true};
 // A file as it is read, line by line: vertices may come after the edges that name them.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : path_(path) {
+  explicit Reader(const std::filesystem::path& path) {
     for (const core::TextLine& line : core::read_text_lines(path)) read(line);
     for (const auto& [line, kind] : edges_) add_edge(line, *kind);
     for (const auto& line : fixed_) found_.graph.fixed_nodes.push_back(node_of(line, 1));
@@ -160,7 +159,6 @@ class Reader {
     return full;
   }
 
-  std::filesystem::path path_;
   G2oGraph found_;
   std::map<long, int> node_of_;
   std::vector<std::pair<core::TextLine, const Kind*>> edges_;
