@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Cholesky>
+
 #include <samewhere/core/median.hpp>
 #include <samewhere/evaluate/consistency.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
@@ -14,10 +16,11 @@ constexpr double kChiSquare99 = 16.812;  // with 6 degrees of freedom
 constexpr double kNormal95 = 1.96;
 
 double normalised_error_squared(const MeasuredMotion& motion, const core::Rigid3& truth) {
+  const core::Rigid3& measured = motion.from_from_to.a_from_b;
   core::Vector6d error;
-  error << motion.from_from_to.translation - truth.translation,
-      core::log_so3(motion.from_from_to.rotation * truth.rotation.conjugate());
-  return error.dot(motion.information * error);
+  error << measured.translation - truth.translation,
+      core::log_so3(truth.rotation.conjugate() * measured.rotation);
+  return error.dot(motion.from_from_to.covariance.llt().solve(error));
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include <samewhere/core/rigid3.hpp>
 #include <samewhere/core/truth.hpp>
+#include <samewhere/geometry/uncertain_pose.hpp>
 
 namespace samewhere::evaluate {
 
@@ -12,13 +12,11 @@ namespace samewhere::evaluate {
 struct MeasuredMotion {
   double from_s = 0.0;
   double to_s = 0.0;
-  core::Rigid3 from_from_to;
-  core::Matrix6d information =
-      core::Matrix6d::Identity();  // tangent [m; rad], rotation on the left
+  geometry::UncertainPose from_from_to;
 };
 
-// Whether somebody who measures motions is as good as they say: e' information e of their errors e,
-// which for an honest one has the mean 6 (Bar-Shalom, Li and Kirubarajan, "Estimation with
+// Whether somebody who measures motions is as good as they say: e' covariance^-1 e of their errors
+// e, which for an honest one has the mean 6 (Bar-Shalom, Li and Kirubarajan, "Estimation with
 // applications to tracking and navigation", 2001, section 5.4). Below, they are better than they
 // say; above, worse.
 struct Consistency {

@@ -37,8 +37,8 @@ std::vector<MeasuredMotion> measured(const core::Trajectory& truth, double facto
     motions.push_back(
         {truth[i - 1].stamp_s,
          truth[i].stamp_s,
-         {core::exp_so3(error.tail<3>()) * motion.rotation, motion.translation + error.head<3>()},
-         sigma.cwiseAbs2().cwiseInverse().asDiagonal()});
+         {{motion.rotation * core::exp_so3(error.tail<3>()), motion.translation + error.head<3>()},
+          sigma.cwiseAbs2().asDiagonal()}});
   }
   return motions;
 }

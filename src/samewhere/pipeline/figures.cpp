@@ -73,7 +73,10 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.num_candidates = findings.num_candidates;
   evaluation.loops = evaluate::check_loops(findings.loops, truth);
   evaluation.knows_impostors = !truth.impostors.empty();
-  evaluation.drift_model = evaluate::consistency(findings.odometry_edges, truth.trajectory);
+  for (const auto& [num_edges, motions] : findings.odometry_chains) {
+    if (const auto found = evaluate::consistency(motions, truth.trajectory))
+      evaluation.drift_model[num_edges] = *found;
+  }
   return evaluation;
 }
 
@@ -136,11 +139,12 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
         {"translational error over 1 s, median (RMSE)",
          fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
   }
-  if (const auto& drift = evaluation.drift_model) {
+  for (const auto& [num_edges, drift] : evaluation.drift_model) {
     figures.push_back(
-        {"odometry's squared error over its belief",
-         fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} edges)", drift->mean,
-                     drift->band_low, drift->band_high, drift->median, drift->num_motions)});
+        {fmt::format("squared error of {} over its belief",
+                     num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
+         fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
+                     drift.band_low, drift.band_high, drift.median, drift.num_motions)});
   }
   const auto& loops = evaluation.loops;
   figures.push_back({"candidates judged", std::to_string(evaluation.num_candidates)});

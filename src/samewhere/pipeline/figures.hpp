@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -22,8 +23,9 @@ struct SlamFindings {
   core::Trajectory odometry;    // before any correction
   int num_candidates = 0;
   std::vector<evaluate::AcceptedLoop> loops;
-  bool is_scale_free = false;                            // monocular: aligned with a scale
-  std::vector<evaluate::MeasuredMotion> odometry_edges;  // empty if not known, or without a scale
+  bool is_scale_free = false;  // monocular: aligned with a scale
+  // Odometry by the number of edges that it is composed of; empty if not known, or without a scale.
+  std::map<int, std::vector<evaluate::MeasuredMotion>> odometry_chains;
 };
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free);
@@ -39,8 +41,8 @@ struct SlamEvaluation {
   std::optional<evaluate::RpeResult> rpe;  // over 1 s
   int num_candidates = 0;
   evaluate::LoopCheck loops;
-  bool knows_impostors = false;  // whether the truth names any
-  std::optional<evaluate::Consistency> drift_model;
+  bool knows_impostors = false;                      // whether the truth names any
+  std::map<int, evaluate::Consistency> drift_model;  // by the number of edges
 };
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth);

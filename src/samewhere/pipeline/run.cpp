@@ -22,6 +22,9 @@
 namespace samewhere::pipeline {
 namespace {
 
+// Lengths, in edges, over which the drift model is held against the truth.
+constexpr int kChains[] = {1, 10};
+
 RunOutcome start_outcome(const Config& config, const core::SourceInfo& info) {
   RunOutcome outcome;
   outcome.record.title = info.name;
@@ -218,7 +221,11 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   report::RunRecord& record = outcome.record;
   record_slam(slam, names, record);
   SlamFindings findings = findings_of(record, is_monocular);
-  if (!is_monocular) findings.odometry_edges = odometry_edges_of(slam.map(), slam.session());
+  for (const int num_edges : kChains) {
+    if (!is_monocular)
+      findings.odometry_chains[num_edges] =
+          odometry_chains_of(slam.map(), slam.session(), num_edges);
+  }
   const SlamEvaluation evaluation = evaluate_slam(findings, truth);
   record.figures = figures_of(evaluation);
   record.figures.push_back(

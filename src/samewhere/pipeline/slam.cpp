@@ -1,6 +1,9 @@
 #include <utility>
 
+#include <Eigen/LU>
+
 #include <samewhere/core/errors.hpp>
+#include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/pipeline/slam.hpp>
 
 namespace samewhere::pipeline {
@@ -32,6 +35,24 @@ std::unique_ptr<MappingLink> link_to(Mapping& stage, const Config& config, const
         stage.take(message, reply);
       },
       config.threads, 1, hooks.dawdle);
+}
+
+// The keyframe and those before it, `num_edges` in all, whose edges to their parents make a chain;
+// nothing if one of them is used or the session begins too late.
+std::vector<core::KeyframeId> edges_before(const scene::MapVersion& map, core::KeyframeId id,
+                                           int num_edges, const std::vector<bool>& is_used) {
+  std::vector<core::KeyframeId> edges;
+  while (static_cast<int>(edges.size()) < num_edges) {
+    const auto& odometry = map.at(id).odometry;
+    if (!odometry || is_used[id.index()]) return {};
+    edges.push_back(id);
+    id = odometry->parent;
+  }
+  return edges;
+}
+
+geometry::UncertainPose edge_of(const scene::Keyframe& keyframe) {
+  return {parent_from_keyframe(keyframe), keyframe.odometry->information.inverse()};
 }
 
 }  // namespace
@@ -135,19 +156,27 @@ core::Trajectory odometry_of(const scene::MapVersion& map,
   return placed(map, frames, [&](core::KeyframeId id) { return world_from_body[id.index()]; });
 }
 
-std::vector<evaluate::MeasuredMotion> odometry_edges_of(const scene::MapVersion& map,
-                                                        std::uint16_t session) {
-  std::vector<evaluate::MeasuredMotion> edges;
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
-    const scene::Keyframe& keyframe = map.keyframes[i];
-    if (!keyframe.odometry || keyframe.view.frame.session() != session) continue;
-    const scene::Keyframe& parent = map.at(keyframe.odometry->parent);
-    const core::Rigid3& body_from_camera = keyframe.view.rig->body_from_camera[0];
-    edges.push_back({parent.view.stamp_s, keyframe.view.stamp_s,
-                     inverse(body_from_camera) * parent_from_keyframe(keyframe) * body_from_camera,
-                     keyframe.odometry->information});
+std::vector<evaluate::MeasuredMotion> odometry_chains_of(const scene::MapVersion& map,
+                                                         std::uint16_t session, int num_edges) {
+  std::vector<evaluate::MeasuredMotion> chains;
+  std::vector<bool> is_used(map.keyframes.size(), false);  // the edge to the parent
+  for (std::size_t i = map.keyframes.size(); i-- > 0;) {
+    const scene::Keyframe& last = map.keyframes[i];
+    if (last.view.frame.session() != session) continue;
+    const auto edges = edges_before(map, last.id, num_edges, is_used);
+    if (edges.empty()) continue;
+    geometry::UncertainPose first_from_last;
+    for (const auto& id : edges) {
+      is_used[id.index()] = true;
+      first_from_last = compose(edge_of(map.at(id)), first_from_last);
+    }
+    const scene::Keyframe& first = map.at(map.at(edges.back()).odometry->parent);
+    const geometry::UncertainPose body_from_camera{last.view.rig->body_from_camera[0]};
+    chains.push_back(
+        {first.view.stamp_s, last.view.stamp_s,
+         compose(inverse(body_from_camera), compose(first_from_last, body_from_camera))});
   }
-  return edges;
+  return chains;
 }
 
 }  // namespace samewhere::pipeline

@@ -75,9 +75,9 @@ core::Trajectory trajectory_of(const scene::MapVersion& map,
 // The same as if no loop had been closed.
 core::Trajectory odometry_of(const scene::MapVersion& map,
                              const std::vector<core::FramePose>& frames);
-// From each keyframe of a session to the next, as well as is known without loops, with what the
-// drift model says of it.
-std::vector<evaluate::MeasuredMotion> odometry_edges_of(const scene::MapVersion& map,
-                                                        std::uint16_t session);
+// Odometry of a session over chains of num_edges > 0 edges that share none, as well as it is known
+// without loops, with what the drift model says of it.
+std::vector<evaluate::MeasuredMotion> odometry_chains_of(const scene::MapVersion& map,
+                                                         std::uint16_t session, int num_edges);
 
 }  // namespace samewhere::pipeline
