@@ -1,6 +1,8 @@
 #include <memory>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "commands.hpp"
 #include "print.hpp"
 #include <samewhere/pipeline/run_folder.hpp>
@@ -12,6 +14,7 @@ namespace {
 struct EvalCommand {
   std::string folder;
   std::string walk;
+  bool stages = false;
 };
 
 }  // namespace
@@ -25,11 +28,18 @@ void add_eval_command(CLI::App& app) {
   sub->add_option(
       "--walk", command->walk,
       "count accepted loops between floors; a list `image floor clip`, as the run's source");
+  sub->add_flag("--stages", command->stages,
+                "print where the time went instead: wall time and processor time of each stage");
   sub->footer(
       "Examples:\n"
       "  samewhere eval runs/twin-corridors\n"
-      "  samewhere eval runs/walk.txt --walk tower/walk.txt");
+      "  samewhere eval runs/walk.txt --walk tower/walk.txt\n"
+      "  samewhere eval runs/twin-corridors --stages");
   sub->callback([command] {
+    if (command->stages) {
+      fmt::print("{}", report::as_text(pipeline::stages_of_folder(command->folder)));
+      return;
+    }
     print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder)
                                         : pipeline::evaluate_walk(command->folder, command->walk));
   });

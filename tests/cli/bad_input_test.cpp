@@ -196,6 +196,7 @@ TEST_F(BadInput, EvalOfWhatIsNoRun) {
   ASSERT_EQ(run_tum().exit_code, 0);
   core::write_file(out() / "loops.json", "{\"version\"");
   expect_clear_error(run("eval " + quoted(out())), {"loops.json"});
+  expect_clear_error(run("eval --stages " + quoted(source())), {"timing.json"});
 }
 
 TEST_F(BadInput, UnknownCommandsAndOptions) {

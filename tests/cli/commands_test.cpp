@@ -124,6 +124,9 @@ TEST_F(Commands, RunEvalAndASecondRunAgree) {
   const std::string figure = row_of(eval.out, "ATE RMSE (median, max)");
   EXPECT_FALSE(figure.empty()) << eval.out;
   EXPECT_EQ(row_of(first.out, "ATE RMSE (median, max)"), figure);
+  const Outcome stages = run("eval --stages " + quoted(path("a")));
+  EXPECT_EQ(stages.exit_code, 0) << stages.err;
+  EXPECT_TRUE(row_of(stages.out, "track").starts_with("12 ")) << stages.out;
 }
 
 TEST_F(Commands, LoopsWritesTheFilesThatOthersRead) {

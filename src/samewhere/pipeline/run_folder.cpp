@@ -12,6 +12,7 @@
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/report/timing_json.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -137,6 +138,11 @@ std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,
           {"of these between two floors (wrong)", std::to_string(counts.num_wrong)},
           {"on one floor, of these in one clip",
            fmt::format("{}, {}", counts.num_same_floor, counts.num_same_clip)}};
+}
+
+report::Table stages_of_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "timing.json";
+  return report::stage_table(core::read_file(path), path.string());
 }
 
 }  // namespace samewhere::pipeline

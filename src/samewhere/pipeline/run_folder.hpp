@@ -5,6 +5,7 @@
 
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/report/record.hpp>
+#include <samewhere/report/table.hpp>
 
 namespace samewhere::pipeline {
 
@@ -22,5 +23,8 @@ std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder)
 // InputError.
 std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,
                                           const std::filesystem::path& walk);
+
+// Where the time of a finished run went. Throws InputError if timing.json is missing or broken.
+report::Table stages_of_folder(const std::filesystem::path& folder);
 
 }  // namespace samewhere::pipeline

@@ -91,6 +91,28 @@ TEST(TimingJson, WithoutATimedFrameThereIsNoRate) {
   EXPECT_TRUE(document.at("stages").empty());
 }
 
+TEST(TimingJson, TellsWhereTheTimeWent) {
+  core::Timings timings = sample_record().timings;
+  timings.add("bundle", 50.0, 48.0);
+  const Table table = stage_table(timing_json(timings, 1.0), "timing.json");
+  ASSERT_GE(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0], (std::vector<std::string>{"bundle", "1", "50.00", "50.00", "50.00",
+                                                     "24.00"}));  // 48 ms over two frames
+  EXPECT_EQ(table.rows[1],
+            (std::vector<std::string>{"frame", "2", "10.00", "30.00", "30.00", "12.00"}));
+}
+
+TEST(TimingJson, WhatIsNoneIsRefusedByName) {
+  for (const std::string text : {"", "{", "{}", R"({"stages": {"frame": {"count": "two"}}})"}) {
+    try {
+      stage_table(text, "run/timing.json");
+      FAIL() << text;
+    } catch (const core::InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("run/timing.json: not a timing.json"));
+    }
+  }
+}
+
 TEST(Base64, AgreesWithTheExamplesOfRfc4648) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");

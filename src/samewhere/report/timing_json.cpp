@@ -1,5 +1,10 @@
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/report/record.hpp>
 #include <samewhere/report/timing_json.hpp>
 
@@ -22,6 +27,30 @@ Json frames_per_second(const core::Timings& timings) {
   return 1000.0 * summary.count / summary.total_ms;
 }
 
+// A stage of the document.
+struct StageTimes {
+  std::string name;
+  core::TimingSummary wall;
+  double processor_ms = 0.0;
+};
+
+std::vector<StageTimes> stages_of(const Json& document) {
+  std::vector<StageTimes> stages;
+  for (const auto& [name, stage] : document.at("stages").items()) {
+    stages.push_back({name,
+                      {.count = stage.at("count"),
+                       .median_ms = stage.at("median_ms"),
+                       .p95_ms = stage.at("p95_ms"),
+                       .p99_ms = stage.at("p99_ms"),
+                       .total_ms = stage.at("total_ms")},
+                      stage.at("processor_ms")});
+  }
+  std::stable_sort(stages.begin(), stages.end(), [](const StageTimes& a, const StageTimes& b) {
+    return a.processor_ms > b.processor_ms;
+  });
+  return stages;
+}
+
 }  // namespace
 
 std::string timing_json(const core::Timings& timings, double peak_memory_mib) {
@@ -33,6 +62,28 @@ std::string timing_json(const core::Timings& timings, double peak_memory_mib) {
                          {"peak_memory_mib", peak_memory_mib},
                          {"stages", std::move(stages)}};
   return document.dump(1) + "\n";
+}
+
+Table stage_table(const std::string& json, const std::string& name) {
+  Table table{{"stage", "times", "median ms", "p95 ms", "p99 ms", "processor ms a frame"}, {}};
+  try {
+    const Json document = Json::parse(json);
+    const std::vector<StageTimes> stages = stages_of(document);
+    const auto frame = std::find_if(stages.begin(), stages.end(), [](const StageTimes& stage) {
+      return stage.name == kWholeFrameStage;
+    });
+    const int num_frames = frame == stages.end() ? 0 : frame->wall.count;
+    const auto ms = [](double value) { return fmt::format("{:.2f}", value); };
+    for (const auto& stage : stages) {
+      table.rows.push_back({stage.name, std::to_string(stage.wall.count), ms(stage.wall.median_ms),
+                            ms(stage.wall.p95_ms), ms(stage.wall.p99_ms),
+                            num_frames > 0 ? ms(stage.processor_ms / num_frames) : "-"});
+    }
+  } catch (const Json::exception&) {
+    throw core::InputError(name +
+                           ": not a timing.json; expected {\"version\": 1, \"stages\": {...}}");
+  }
+  return table;
 }
 
 }  // namespace samewhere::report

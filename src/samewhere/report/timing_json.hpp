@@ -3,6 +3,7 @@
 #include <string>
 
 #include <samewhere/core/timing.hpp>
+#include <samewhere/report/table.hpp>
 
 namespace samewhere::report {
 
@@ -10,5 +11,10 @@ namespace samewhere::report {
 // the stage's thread); peak_memory_mib; and frames_per_second, eq. (26), by the stage
 // kWholeFrameStage (null if it was not timed).
 std::string timing_json(const core::Timings& timings, double peak_memory_mib);
+
+// Where the time went, by such a document: a row a stage, the one that took the processor longest
+// first; its processor time is told per whole frame. Throws InputError that begins with `name` if
+// the text is no such document.
+Table stage_table(const std::string& json, const std::string& name);
 
 }  // namespace samewhere::report
