@@ -137,25 +137,33 @@ scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
 }
 
 scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair) {
-  core::require(map.keyframes.empty(), "a map is started once");
   const core::Rigid3& body_from_camera = pair.first.rig->body_from_camera[0];
   const core::Rigid3 world_from_second =
       body_from_camera * pair.first_from_second * inverse(pair.second.rig->body_from_camera[0]);
   scene::Edit edit;
   edit.keyframes = {next_keyframe(map, pair.first, core::Rigid3{}),
                     next_keyframe(map, pair.second, world_from_second)};
+  const core::KeyframeId first_id = edit.keyframes.front().id;
   scene::Keyframe& second = edit.keyframes.back();
-  second.id = core::KeyframeId(1);
-  second.odometry = {core::KeyframeId(0), world_from_second, core::Matrix6d::Identity()};
+  second.id = core::KeyframeId(first_id.value() + 1);
+  second.odometry = {first_id, world_from_second, core::Matrix6d::Identity()};
   for (std::size_t i = 0; i < pair.matches.size(); ++i) {
     scene::Landmark landmark;
-    landmark.id = core::LandmarkId(i);
-    landmark.anchor = core::KeyframeId(0);
+    landmark.id = core::LandmarkId(map.landmarks.size() + i);
+    landmark.anchor = first_id;
     landmark.position_in_anchor = body_from_camera * pair.points_in_first[i];
     landmark.rgb = pair.first.features->rgb[static_cast<std::size_t>(pair.matches[i].first)];
-    edit.sightings.push_back({landmark.id, {core::KeyframeId(0), pair.matches[i].first}});
-    edit.sightings.push_back({landmark.id, {core::KeyframeId(1), pair.matches[i].second}});
+    edit.sightings.push_back({landmark.id, {first_id, pair.matches[i].first}});
+    edit.sightings.push_back({landmark.id, {second.id, pair.matches[i].second}});
     edit.landmarks.push_back(std::move(landmark));
+  }
+  return edit;
+}
+
+scene::Edit give_up(const scene::MapVersion& map) {
+  scene::Edit edit;
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    if (is_live(map.landmarks[i])) edit.culled_landmarks.push_back(map.landmarks[i].id);
   }
   return edit;
 }

@@ -45,9 +45,12 @@ bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
 // stands at `world_from_body`.
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
                       const core::Rigid3& world_from_body);
-// The edit that makes two views the first keyframes, the first at the world's origin. ContractError
-// if the map has begun.
+// The edit that makes two views the next keyframes, the first of a session at the world's origin:
+// they stand to each other, and to none that was there before.
 scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair);
+// The edit after which the map shows nothing: every landmark is culled. The keyframes stay, as
+// pictures of the past.
+scene::Edit give_up(const scene::MapVersion& map);
 scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked);
 
 }  // namespace samewhere::map

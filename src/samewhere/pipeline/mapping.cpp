@@ -24,6 +24,8 @@ void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
 }
 
 void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& reply) {
+  hear_loops(config_.map.loop_lag_keyframes - 1);
+  apply(map::give_up(map_));
   apply(map::start_map(map_, message.views));
   connect_newest();
   refine_newest();

@@ -27,8 +27,8 @@ struct StartMap {
   cv::Mat image;
 };
 
-// The map begins with two views of one camera; the image is the second one's. Answered when both
-// stand where a bundle put them.
+// The map begins, or begins anew, with two views of one camera; the image is the second one's. What
+// it showed before is given up. Answered when both stand where a bundle put them.
 struct StartMapByMotion {
   map::ViewPair views;
   cv::Mat image;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core/utility.hpp>
 
+#include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
 
@@ -170,6 +171,59 @@ TEST(Relocalisation, WithoutDepthWhoIsKidnappedResumesWhereHeWas) {
     EXPECT_LT(core::angle_rad(between(positions[i], i).rotation), kSamePlace_rad);
   }
   EXPECT_GE(num_measured, 8) << "of " << kNumAgain;
+}
+
+// One camera, carried after a second into another building.
+class Abducted : public testing::Test {
+ protected:
+  static constexpr int kNumBefore = 25;
+  static constexpr int kNumAfter = 60;
+
+  void walk_on(Slam& slam) const {
+    std::size_t i = 0;
+    for (const auto& frame : before_.frames) slam.feed(with_id(frame, i++, 0));
+    for (const auto& frame : after_.frames) slam.feed(with_id(frame, i++, 0));
+    slam.finish();
+  }
+  // Poses of either building.
+  static int num_measured(const Slam& slam, std::size_t begin, std::size_t end) {
+    const auto poses = poses_of(slam);
+    return static_cast<int>(std::count_if(poses.begin() + static_cast<std::ptrdiff_t>(begin),
+                                          poses.begin() + static_cast<std::ptrdiff_t>(end),
+                                          [](const auto& pose) { return pose.has_value(); }));
+  }
+  static int num_before(const Slam& slam) { return num_measured(slam, 0, kNumBefore); }
+  static int num_after(const Slam& slam) {
+    return num_measured(slam, kNumBefore, kNumBefore + kNumAfter);
+  }
+
+  Config config_ = config_of("twin:office-loop?seed=7&camera=mono", kNumBefore);
+  Walk before_ = walk_of(config_);
+  Walk after_ = walk_of(config_of("twin:twin-corridors?seed=7&camera=mono", kNumAfter));
+};
+
+TEST_F(Abducted, AMapThatHasHardlyBegunIsGivenUpForANewOne) {
+  Slam slam(config_, DepthFrom::kMotion);
+  walk_on(slam);
+  EXPECT_EQ(num_before(slam), 0) << "poses of another world";
+  EXPECT_GE(num_after(slam), 40) << "of " << kNumAfter;
+  core::Trajectory trajectory = trajectory_of(slam.map(), slam.frames());
+  for (auto& pose : trajectory) pose.stamp_s -= kNumBefore / 15.0;
+  const auto error = evaluate::ate(after_.truth, trajectory, evaluate::Alignment::kSim3);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->rmse_m, 0.05);
+  const core::KeyframeId first = slam.frames().back().reference_keyframe;
+  for (const auto& shown : slam.map().at(first).slots) {
+    EXPECT_TRUE(!shown.is_valid() || is_live(survivor_of(slam.map(), shown)));
+  }
+}
+
+TEST_F(Abducted, AMapThatIsToBeKeptIsKept) {
+  config_.track.start.provisional_keyframes = 0;
+  Slam slam(config_, DepthFrom::kMotion);
+  walk_on(slam);
+  EXPECT_GE(num_before(slam), 10);
+  EXPECT_EQ(num_after(slam), 0) << "nobody knows where the other building is";
 }
 
 }  // namespace

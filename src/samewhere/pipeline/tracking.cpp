@@ -73,8 +73,14 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
                                                  const features::View& view) {
   if (map_.keyframes.empty()) return start(frame, view);
   auto tracked = locate_in_map(view);
-  if (!tracked && !last_) tracked = relocalise(frame, view);
+  if (!tracked && !last_) {
+    tracked = relocalise(frame, view);
+    if (!tracked && is_start_doubtful()) {
+      if (auto started = start_by_motion(frame, view)) return started;
+    }
+  }
   if (tracked) {
+    if (starter_) starter_->forget();
     follow(*tracked);
     remember(*tracked);
   } else {
@@ -191,12 +197,26 @@ std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& fra
       {started->first, view, start.first_from_second, start.matches, start.points_in_first},
       frame.images[0]});
   const auto num_landmarks = static_cast<int>(start.matches.size());
+  give_up_poses();
   begin_tracking(view, num_landmarks);
-  const scene::Keyframe& first = map_.keyframes[0];
+  const scene::Keyframe& first = map_.keyframes[map_.keyframes.size() - 2];
   keyframe_of_[first.view.frame] = first.id;
   frames_[first.view.frame.index()] = starting_pose(first.view, first.id, num_landmarks);
   locate_passed(started->between);
   return last_;
+}
+
+bool Tracking::is_start_doubtful() const {
+  return starter_ && num_keyframes_ - num_given_up_ <
+                         static_cast<std::uint64_t>(config_.track.start.provisional_keyframes);
+}
+
+// What was sent is sent again.
+void Tracking::give_up_poses() {
+  for (auto& pose : frames_) pose = {.frame = pose.frame, .stamp_s = pose.stamp_s};
+  keyframe_of_.clear();
+  num_given_up_ = num_keyframes_;
+  num_sent_frames_ = 0;
 }
 
 void Tracking::locate_passed(const std::vector<features::View>& views) {

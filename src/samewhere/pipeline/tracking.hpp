@@ -63,6 +63,10 @@ class Tracking {
   // One camera: once a second view has parallax against an earlier one.
   std::optional<map::TrackedView> start_by_motion(const core::Frame& frame,
                                                   const features::View& view);
+  // Whether who is lost in this map may give it up for a new one.
+  bool is_start_doubtful() const;
+  // No frame so far has a pose.
+  void give_up_poses();
   // Frames that were passed while the start was awaited: found in the map that it made.
   void locate_passed(const std::vector<features::View>& views);
   void begin_tracking(const features::View& view, int num_landmarks);
@@ -91,6 +95,7 @@ class Tracking {
   scene::MapVersion map_;  // as it is visible
   scene::LocalMap local_map_;
   std::uint64_t num_keyframes_ = 0;  // sent to mapping, or there before
+  std::uint64_t num_given_up_ = 0;   // of these, when the map began anew
   std::map<core::FrameId, core::KeyframeId> keyframe_of_;
   struct UnderWay {
     core::KeyframeId keyframe;

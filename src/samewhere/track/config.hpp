@@ -37,6 +37,7 @@ struct StartConfig {
   double min_point_parallax_rad = 0.01;
   double max_rival_ratio = 0.7;
   int max_waiting_frames = 300;
+  int provisional_keyframes = 20;
 };
 
 inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
@@ -65,6 +66,10 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
         {.help = "frames after which a first view without a start gives up its place",
          .min = 1,
          .max = 100000});
+  visit("provisional_keyframes", config.provisional_keyframes,
+        {.help = "a map that is lost before it has so many keyframes is given up for a new start",
+         .min = 0,
+         .max = 10000});
   visit("max_rival_ratio", config.max_rival_ratio,
         {.help = "a second motion that explains this share of the best one's matches is ambiguity",
          .min = 0.1,

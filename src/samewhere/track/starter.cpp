@@ -5,7 +5,11 @@ namespace samewhere::track {
 std::optional<StartedPair> Starter::offer(const features::View& view) {
   if (first_) {
     auto start = try_start(*first_, view, settings_);
-    if (start) return StartedPair{*first_, std::move(between_), *std::move(start)};
+    if (start) {
+      StartedPair started{*first_, std::move(between_), *std::move(start)};
+      forget();
+      return started;
+    }
     const bool is_too_late =
         static_cast<int>(between_.size()) >= settings_.start.max_waiting_frames;
     if (start.error().refusal != StartRefusal::kFewMatches && !is_too_late) {
@@ -16,6 +20,11 @@ std::optional<StartedPair> Starter::offer(const features::View& view) {
   first_ = view;
   between_.clear();
   return std::nullopt;
+}
+
+void Starter::forget() {
+  first_.reset();
+  between_.clear();
 }
 
 }  // namespace samewhere::track

@@ -21,6 +21,8 @@ class Starter {
 
   // Views ascend in time. Nothing: not yet.
   std::optional<StartedPair> offer(const features::View& view);
+  // The view that was kept starts nothing any more.
+  void forget();
 
  private:
   StartSettings settings_;
