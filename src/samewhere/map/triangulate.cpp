@@ -55,11 +55,12 @@ class Pair {
                                         core::skew(second_from_first_.translation) *
                                         second_from_first_.rotation.toRotationMatrix() *
                                         normalised_from_pixel(first_.rig->cameras[0]);
+    const std::vector<Sought> sought = sought_of(of_first);
     std::vector<std::optional<Match>> holders(
         static_cast<std::size_t>(first_.features->size()));  // by feature of the neighbour
     for (const int i : of_second) {
       const Eigen::Vector3d line = fundamental.transpose() * pixel(second_, i).homogeneous();
-      const auto match = best_on_line(line, i, of_first);
+      const auto match = best_on_line(line, i, sought);
       if (!match) continue;
       auto& holder = holders[static_cast<std::size_t>(match->first)];
       if (!holder || match->distance_bits < holder->distance_bits) holder = match;
@@ -95,26 +96,43 @@ class Pair {
   }
 
  private:
+  // A feature of the neighbour, with what each line asks of it worked out once.
+  struct Sought {
+    int feature = 0;
+    Eigen::Vector3d pixel;              // homogeneous
+    double max_squared_distance = 0.0;  // to its epipolar line, pixels
+  };
+
   static Eigen::Vector2d pixel(const features::View& view, int i) {
     return view.features->undistorted_px[static_cast<std::size_t>(i)].cast<double>();
   }
 
+  std::vector<Sought> sought_of(const std::vector<int>& of_first) const {
+    std::vector<Sought> sought;
+    sought.reserve(of_first.size());
+    for (const int i : of_first) {
+      const int octave = first_.features->octave[static_cast<std::size_t>(i)];
+      const double sigma_px = std::pow(features_.scale_factor, octave);
+      sought.push_back(
+          {i, pixel(first_, i).homogeneous(), kChiSquare95OfLine * sigma_px * sigma_px});
+    }
+    return sought;
+  }
+
   std::optional<Match> best_on_line(const Eigen::Vector3d& line, int feature,
-                                    const std::vector<int>& of_first) const {
-    const features::Features& others = *first_.features;
+                                    const std::vector<Sought>& sought) const {
+    const cv::Mat& descriptors = first_.features->descriptors;
     const double length = line.head<2>().norm();
     Match best{-1, feature, 257};
     int second_bits = 257;
-    for (const int i : of_first) {
-      const double sigma_px =
-          std::pow(features_.scale_factor, others.octave[static_cast<std::size_t>(i)]);
-      const double distance_px = line.dot(pixel(first_, i).homogeneous()) / length;
-      if (distance_px * distance_px > kChiSquare95OfLine * sigma_px * sigma_px) continue;
+    for (const auto& other : sought) {
+      const double distance_px = line.dot(other.pixel) / length;
+      if (distance_px * distance_px > other.max_squared_distance) continue;
       const int bits = features::distance_bits(second_.features->descriptors.ptr(feature),
-                                               others.descriptors.ptr(i));
+                                               descriptors.ptr(other.feature));
       if (bits < best.distance_bits) {
         second_bits = best.distance_bits;
-        best.first = i;
+        best.first = other.feature;
         best.distance_bits = bits;
       } else {
         second_bits = std::min(second_bits, bits);
