@@ -109,6 +109,7 @@ std::vector<scene::Edit> fuse_across(const MapVersion& map, const scene::LoopEdg
   for (const auto& keyframe : here) {
     edits.push_back(fuse_into(fused, keyframe, landmarks_of(fused, there), config, features));
     for (auto& merge : edits.back().merges) merge.cause = loop.cause;
+    for (auto& sighting : edits.back().sightings) sighting.observation.cause = loop.cause;
     fused = apply(std::move(fused), edits.back());
   }
   return edits;

@@ -22,7 +22,7 @@ std::vector<scene::Edit> fuse_around(const scene::MapVersion& map, core::Keyfram
                                      const Config& config, const features::Config& features);
 
 // Two places are one, says a loop: the landmarks around `match` looked for in `query` and in its
-// neighbours. What is merged for it bears its cause. Edits to be applied in order.
+// neighbours. What is merged and seen for it bears its cause. Edits to be applied in order.
 std::vector<scene::Edit> fuse_across(const scene::MapVersion& map, const scene::LoopEdge& loop,
                                      const Config& config, const features::Config& features);
 

@@ -36,6 +36,13 @@ class ChunkedVector {
     return (*chunk)[i % kChunkSize];
   }
 
+  // Drops the elements from `size` on.
+  void shrink(std::size_t size) {
+    core::require(size <= size_, "a ChunkedVector shrinks to less");
+    chunks_.resize((size + kChunkSize - 1) / kChunkSize);
+    size_ = size;
+  }
+
   void push_back(T value) {
     if (size_ % kChunkSize == 0) chunks_.push_back(std::make_shared<Chunk>());
     ++size_;

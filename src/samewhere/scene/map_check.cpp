@@ -13,11 +13,8 @@ class MapCheck {
   void run() {
     for (std::size_t i = 0; i < map_.keyframes.size(); ++i) check_keyframe(map_.keyframes[i], i);
     for (std::size_t i = 0; i < map_.landmarks.size(); ++i) check_landmark(map_.landmarks[i], i);
-    for (std::size_t i = 0; i < map_.loops.size(); ++i) {
-      part_ = fmt::format("loop {}", i);
-      expect(has(map_.loops[i].query) && has(map_.loops[i].match),
-             "names a keyframe that is not there");
-    }
+    check_loops(map_.loops, "loop");
+    check_loops(map_.doubted_loops, "doubted_loop");
     for (std::size_t i = 0; i < map_.merges.size(); ++i) {
       part_ = fmt::format("merge {}", i);
       expect(has(map_.merges[i].from) && has(map_.merges[i].to),
@@ -32,6 +29,13 @@ class MapCheck {
   void expect(bool condition, const char* complaint) const {
     if (!condition)
       throw core::InputError(fmt::format("{}: {} is damaged: it {}", where_, part_, complaint));
+  }
+
+  void check_loops(const std::vector<LoopEdge>& loops, const char* name) {
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      part_ = fmt::format("{} {}", name, i);
+      expect(has(loops[i].query) && has(loops[i].match), "names a keyframe that is not there");
+    }
   }
 
   void check_features(const features::View& view) const {

@@ -20,14 +20,18 @@ constexpr char kView[] = "view";    // of keyframes, same numbers; never changes
 constexpr char kSlots[] = "slots";  // of keyframes, same numbers
 constexpr char kLandmark[] = "landmark";
 constexpr char kLoop[] = "loop";
+constexpr char kDoubtedLoop[] = "doubted_loop";
 constexpr char kMerge[] = "merge";
 constexpr char kFrame[] = "frame";            // number: the frame's id
 constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
 constexpr char kLedger[] = "ledger";          // bytes: a line of JSON
-constexpr const char* kTables[] = {kHeader,   kState, kRig,   kKeyframe, kView,       kSlots,
-                                   kLandmark, kLoop,  kMerge, kFrame,    kDescriptor, kLedger};
+constexpr const char* kTables[] = {kHeader, kState,      kRig,   kKeyframe,    kView,
+                                   kSlots,  kLandmark,   kLoop,  kDoubtedLoop, kMerge,
+                                   kFrame,  kDescriptor, kLedger};
 
-constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, 1, kTables};
+// 2: observations have a cause, loops may be doubted.
+constexpr std::int64_t kMapFileVersion = 2;
+constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion, kTables};
 
 // How much a commit left: rows that went missing are missed.
 struct State {
@@ -37,6 +41,7 @@ struct State {
   std::uint64_t num_keyframes = 0;
   std::uint64_t num_landmarks = 0;
   std::uint64_t num_loops = 0;
+  std::uint64_t num_doubted_loops = 0;
   std::uint64_t num_merges = 0;
   std::uint64_t num_frames = 0;
   std::uint64_t num_descriptors = 0;
@@ -47,8 +52,8 @@ struct State {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, State>& state) {
   archive(state.map_number, state.num_settings, state.num_rigs, state.num_keyframes,
-          state.num_landmarks, state.num_loops, state.num_merges, state.num_frames,
-          state.num_descriptors, state.num_ledger_rows, state.last_frame);
+          state.num_landmarks, state.num_loops, state.num_doubted_loops, state.num_merges,
+          state.num_frames, state.num_descriptors, state.num_ledger_rows, state.last_frame);
 }
 
 std::string view_bytes(const features::View& view, std::uint64_t rig) {
@@ -92,7 +97,9 @@ class MapFile::Content {
 
   void write_keyframes(const MapVersion& after, State& state);
   void write_landmarks(const MapVersion& after, State& state);
-  void write_loops(const MapVersion& after, State& state);
+  void read_loops(const char* table, std::uint64_t count, std::vector<LoopEdge>& loops);
+  void write_loops(const char* table, const std::vector<LoopEdge>& before,
+                   const std::vector<LoopEdge>& after);
   void write_merges(const MapVersion& after, State& state);
   void write_extras(const MapExtras& extras, State& state);
   std::uint64_t rig_number(const core::Rig& rig, State& state);
@@ -139,6 +146,13 @@ void MapFile::Content::read_rigs() {
   rigs_.clear();
   file_.read(kRig, state_.num_rigs, [&](std::string_view bytes, const std::string& row) {
     rigs_.push_back(std::make_shared<const core::Rig>(value_of<core::Rig>(bytes, row)));
+  });
+}
+
+void MapFile::Content::read_loops(const char* table, std::uint64_t count,
+                                  std::vector<LoopEdge>& loops) {
+  file_.read(table, count, [&](std::string_view bytes, const std::string& row) {
+    loops.push_back(value_of<LoopEdge>(bytes, row));
   });
 }
 
@@ -196,9 +210,8 @@ StoredMap MapFile::Content::load() {
   file_.read(kLandmark, state_.num_landmarks, [&](std::string_view bytes, const std::string& row) {
     stored.map.landmarks.push_back(value_of<Landmark>(bytes, row));
   });
-  file_.read(kLoop, state_.num_loops, [&](std::string_view bytes, const std::string& row) {
-    stored.map.loops.push_back(value_of<LoopEdge>(bytes, row));
-  });
+  read_loops(kLoop, state_.num_loops, stored.map.loops);
+  read_loops(kDoubtedLoop, state_.num_doubted_loops, stored.map.doubted_loops);
   file_.read(kMerge, state_.num_merges, [&](std::string_view bytes, const std::string& row) {
     stored.map.merges.push_back(value_of<Merge>(bytes, row));
   });
@@ -259,13 +272,12 @@ void MapFile::Content::write_landmarks(const MapVersion& after, State& state) {
   state.num_landmarks = after.landmarks.size();
 }
 
-void MapFile::Content::write_loops(const MapVersion& after, State& state) {
-  for (std::size_t i = 0; i < after.loops.size(); ++i) {
-    const LoopEdge* before = i < map_.loops.size() ? &map_.loops[i] : nullptr;
-    put_change(kLoop, static_cast<std::int64_t>(i), before, after.loops[i]);
-  }
-  file_.remove_from(kLoop, static_cast<std::int64_t>(after.loops.size()));
-  state.num_loops = after.loops.size();
+void MapFile::Content::write_loops(const char* table, const std::vector<LoopEdge>& before,
+                                   const std::vector<LoopEdge>& after) {
+  for (std::size_t i = 0; i < after.size(); ++i)
+    put_change(table, static_cast<std::int64_t>(i), i < before.size() ? &before[i] : nullptr,
+               after[i]);
+  file_.remove_from(table, static_cast<std::int64_t>(after.size()));
 }
 
 void MapFile::Content::write_merges(const MapVersion& after, State& state) {
@@ -302,7 +314,10 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
   Transaction transaction = file_.transaction();
   write_keyframes(after, state);
   write_landmarks(after, state);
-  write_loops(after, state);
+  write_loops(kLoop, map_.loops, after.loops);
+  write_loops(kDoubtedLoop, map_.doubted_loops, after.doubted_loops);
+  state.num_loops = after.loops.size();
+  state.num_doubted_loops = after.doubted_loops.size();
   write_merges(after, state);
   write_extras(extras, state);
   state.map_number = after.number;

@@ -54,7 +54,7 @@ void fields(Archive& archive, Value<Archive, Keyframe>& keyframe) {
 
 template <class Archive>
 void fields(Archive& archive, Value<Archive, Observation>& observation) {
-  archive(observation.keyframe, observation.slot);
+  archive(observation.keyframe, observation.slot, observation.cause);
 }
 
 template <class Archive>

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/scene/map_version.hpp>
+#include <samewhere/scene/observations.hpp>
+#include <samewhere/scene/withdraw.hpp>
 
 namespace samewhere::scene {
 namespace {
@@ -15,36 +16,23 @@ namespace {
 void see_again(MapVersion& map, const Sighting& sighting) {
   Landmark& landmark = map.landmarks.edit(sighting.landmark.index());
   const Keyframe& keyframe = map.at(sighting.observation.keyframe);
-  const auto slot = static_cast<std::size_t>(sighting.observation.slot);
-  core::require(slot < keyframe.slots.size(), "a sighting names a slot of its keyframe");
+  core::require(static_cast<std::size_t>(sighting.observation.slot) < keyframe.slots.size(),
+                "a sighting names a slot of its keyframe");
   core::require(is_live(landmark) && is_live(keyframe), "a sighting is of what the map shows");
-  const core::Rigid3 anchor_from_body =
-      inverse(world_from_body(map, landmark.anchor)) * keyframe.world_from_body;
-  const core::Rigid3& body_from_camera = keyframe.view.rig->body_from_camera[0];
-
   if (const auto point = features::point_in_camera(keyframe.view, sighting.observation.slot)) {
     const double weight = weight_of_depth(point->z());
-    const Eigen::Vector3d seen_at = anchor_from_body * (body_from_camera * *point);
+    const core::Rigid3 anchor_from_body =
+        inverse(world_from_body(map, landmark.anchor)) * keyframe.world_from_body;
+    const Eigen::Vector3d seen_at =
+        anchor_from_body * (keyframe.view.rig->body_from_camera[0] * *point);
     landmark.position_in_anchor =
         (landmark.weight * landmark.position_in_anchor + weight * seen_at) /
         (landmark.weight + weight);
     landmark.weight += weight;
   }
-  const Eigen::Vector3d eye =
-      (anchor_from_body * body_from_camera).translation - landmark.position_in_anchor;
-  landmark.range_m = eye.norm();
-  landmark.normal_in_anchor = eye.normalized();
-  landmark.octave = keyframe.view.features->octave[slot];
-  std::memcpy(landmark.descriptor.data(),
-              keyframe.view.features->descriptors.ptr(sighting.observation.slot),
-              landmark.descriptor.size());
+  look_as_seen(map, landmark, sighting.observation);
   landmark.observations.push_back(sighting.observation);
-  map.keyframes.edit(sighting.observation.keyframe.index()).slots[slot] = landmark.id;
-}
-
-void set_slot(MapVersion& map, const Observation& observation, core::LandmarkId landmark) {
-  map.keyframes.edit(observation.keyframe.index())
-      .slots[static_cast<std::size_t>(observation.slot)] = landmark;
+  set_slot(map, sighting.observation, landmark.id);
 }
 
 // A landmark that no keyframe shows any more goes.
@@ -134,6 +122,7 @@ void move(MapVersion& map, const Edit& edit) {
 }  // namespace
 
 MapVersion apply(MapVersion map, const Edit& edit) {
+  withdraw(map, edit.withdrawn_loops, edit.unmerged_landmarks);
   for (const auto& keyframe : edit.keyframes) {
     core::require(keyframe.id.index() == map.keyframes.size(),
                   "keyframes are added in the order of their ids");
@@ -150,7 +139,12 @@ MapVersion apply(MapVersion map, const Edit& edit) {
   for (const auto& made : edit.merges) merge(map, made);
   for (const auto& id : edit.culled_landmarks) cull(map, id);
   for (const auto& id : edit.culled_keyframes) cull(map, id);
-  map.loops.insert(map.loops.end(), edit.loops.begin(), edit.loops.end());
+  map.doubted_loops.insert(map.doubted_loops.end(), edit.doubted_loops.begin(),
+                           edit.doubted_loops.end());
+  for (const auto& loop : edit.loops) {
+    std::erase_if(map.doubted_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
+    map.loops.push_back(loop);
+  }
   ++map.number;
   return map;
 }

@@ -18,6 +18,8 @@ using OrbDescriptor = std::array<std::uint8_t, 32>;
 struct Observation {
   core::KeyframeId keyframe;
   int slot = 0;
+  core::CandidateId cause =
+      {};  // the loop for which it was made; invalid: tracking or mapping alone
 };
 
 // A point of the world. Where it is hangs on the keyframe that saw it first.
@@ -95,7 +97,10 @@ struct MapVersion {
   ChunkedVector<Keyframe> keyframes;
   ChunkedVector<Landmark> landmarks;
   std::vector<LoopEdge> loops;
-  ChunkedVector<Merge> merges;  // in the order they were made
+  // Accepted, but bent beyond belief when the poses were solved. They hold nothing; later loops may
+  // speak for them. Their keyframes may be culled.
+  std::vector<LoopEdge> doubted_loops;
+  ChunkedVector<Merge> merges;  // in the order they were made, without those taken back
 
   const Keyframe& at(core::KeyframeId id) const { return keyframes[id.index()]; }
   const Landmark& at(core::LandmarkId id) const { return landmarks[id.index()]; }
@@ -134,6 +139,8 @@ struct RemovedObservation {
 // A change of the map, as a value: what is added, what moves and what goes. Applied in the order of
 // the fields.
 struct Edit {
+  std::vector<core::CandidateId> withdrawn_loops;    // taken back with all that they caused
+  std::vector<core::LandmarkId> unmerged_landmarks;  // no longer one with what they went into
   std::vector<Keyframe> keyframes;
   std::vector<Landmark> landmarks;
   std::vector<Sighting> sightings;
@@ -144,12 +151,14 @@ struct Edit {
   std::vector<Merge> merges;
   std::vector<core::LandmarkId> culled_landmarks;
   std::vector<core::KeyframeId> culled_keyframes;
-  std::vector<LoopEdge> loops;
+  std::vector<LoopEdge> doubted_loops;
+  std::vector<LoopEdge> loops;  // doubted before: no longer
 };
 
 // The version after the edit. Ids are positions and stay: what is merged or culled is marked, not
-// removed. Throws ContractError if ids do not continue the map's or name what is not there, for a
-// culled keyframe without odometry (nothing would hold it) and for one that a loop edge holds.
+// removed; what a loop caused is withdrawn as withdraw.hpp says. Throws ContractError if ids do not
+// continue the map's or name what is not there, for a culled keyframe without odometry (nothing
+// would hold it) and for one that a loop edge holds.
 MapVersion apply(MapVersion map, const Edit& edit);
 
 // Weight of a depth in a landmark's mean: the variance of a triangulated depth grows with its
@@ -175,6 +184,10 @@ Holder holder_of(const MapVersion& map, core::KeyframeId id);
 
 // The landmark that is shown in place of this one: itself unless it was merged. It may be culled.
 const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id);
+
+// Whether the shortest way between two live keyframes, in edges of odometry and of loops, takes a
+// loop: what places one relative to the other rests on that loop, and must not count as odometry.
+bool are_joined_by_loop(const MapVersion& map, core::KeyframeId a, core::KeyframeId b);
 
 // A keyframe and how many landmarks it shares with another.
 struct Covisible {

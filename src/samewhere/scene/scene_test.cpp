@@ -30,6 +30,22 @@ TEST(ChunkedVector, AppendingToACopyLeavesTheOriginal) {
   EXPECT_THROW(first[6], core::ContractError);
 }
 
+TEST(ChunkedVector, WhatIsDroppedStaysInTheOther) {
+  ChunkedVector<int, 4> first;
+  for (int i = 0; i < 10; ++i) first.push_back(i);
+  ChunkedVector<int, 4> second = first;
+  second.shrink(6);
+  second.push_back(-6);
+  EXPECT_EQ(second.size(), 7U);
+  EXPECT_EQ(second[5], 5);
+  EXPECT_EQ(second[6], -6);
+  EXPECT_EQ(first[6], 6);
+  EXPECT_EQ(first[9], 9);
+  EXPECT_THROW(second.shrink(8), core::ContractError);
+  second.shrink(0);
+  EXPECT_TRUE(second.empty());
+}
+
 Keyframe keyframe(std::uint64_t index, const features::View& view,
                   const core::Rigid3& world_from_body) {
   Keyframe made;

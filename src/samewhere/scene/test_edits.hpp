@@ -30,7 +30,12 @@ class RandomEdits {
   Edit next(const MapVersion& map) {
     Edit edit;
     touched_.clear();
-    add_keyframe(map, edit);
+    if (map.loops.size() > 1 && random_.index(4) == 0) {
+      withdraw_loop(map, edit);
+      add_keyframe(map, edit, false);
+      return edit;
+    }
+    add_keyframe(map, edit, true);
     move_keyframes(map, edit);
     if (map.keyframes.size() > 1 && random_.index(3) == 0) add_loop(map, edit);
     for (std::size_t i = 0; i < map.landmarks.size(); ++i) change_landmark(map, i, edit);
@@ -43,7 +48,7 @@ class RandomEdits {
     return core::KeyframeId(random_.index(map.keyframes.size()));
   }
 
-  void add_keyframe(const MapVersion& map, Edit& edit) {
+  void add_keyframe(const MapVersion& map, Edit& edit, bool sees_known) {
     Keyframe keyframe;
     keyframe.id = core::KeyframeId(map.keyframes.size());
     keyframe.world_from_body = random_pose(random_);
@@ -54,12 +59,12 @@ class RandomEdits {
       keyframe.odometry = {any_keyframe(map), random_pose(random_), random_information(random_)};
     std::set<std::uint64_t> seen;
     for (std::size_t slot = 0; slot < keyframe.slots.size(); ++slot) {
-      const Observation observation{keyframe.id, static_cast<int>(slot)};
+      const Observation observation{keyframe.id, static_cast<int>(slot), any_cause()};
       const std::uint64_t kind = random_.index(3);
       if (kind == 0) {
         edit.landmarks.push_back(new_landmark(map, edit, observation));
         keyframe.slots[slot] = edit.landmarks.back().id;
-      } else if (kind == 1 && !map.landmarks.empty()) {
+      } else if (kind == 1 && sees_known && !map.landmarks.empty()) {
         const std::uint64_t known = random_.index(map.landmarks.size());
         if (is_live(map.landmarks[known]) && seen.insert(known).second)
           edit.sightings.push_back({core::LandmarkId(known), observation});
@@ -101,7 +106,7 @@ class RandomEdits {
     const std::uint64_t kind = random_.index(12);
     if (kind == 0) edit.landmark_changes.push_back({landmark.id, {random_.gaussian(), 0.0, 1.0}});
     if (kind == 1 && !is_last && is_live(map.landmarks[i + 1])) {
-      edit.merges.push_back({landmark.id, map.landmarks[i + 1].id, core::CandidateId(i)});
+      edit.merges.push_back({landmark.id, map.landmarks[i + 1].id, any_cause()});
       touched_ = {map.landmarks[i + 1].id};
     }
     if (kind == 2) edit.culled_landmarks.push_back(landmark.id);
@@ -121,12 +126,27 @@ class RandomEdits {
     const core::KeyframeId query = any_keyframe(map);
     const core::KeyframeId match = any_keyframe(map);
     if (!is_live(map.at(query)) || !is_live(map.at(match))) return;
-    edit.loops.push_back({query, match, random_pose(random_), random_information(random_),
-                          core::CandidateId(random_.index(99))});
+    const core::CandidateId cause(map.number);
+    auto& loops = random_.index(3) == 0 ? edit.doubted_loops : edit.loops;
+    loops.push_back({query, match, random_pose(random_), random_information(random_), cause});
+    causes_.push_back(cause);
+  }
+
+  // The last loop, with all that it caused; it is doubted from now on.
+  static void withdraw_loop(const MapVersion& map, Edit& edit) {
+    edit.withdrawn_loops = {map.loops.back().cause};
+    edit.doubted_loops = {map.loops.back()};
+  }
+
+  // One of the loops, or none.
+  core::CandidateId any_cause() {
+    if (causes_.empty() || random_.index(2) == 0) return {};
+    return causes_[random_.index(causes_.size())];
   }
 
   core::Random random_;
   features::TestWorld world_;
+  std::vector<core::CandidateId> causes_;
   std::set<core::LandmarkId> touched_;  // merged into by this edit
 };
 

@@ -47,7 +47,7 @@ inline bool is_same(const Keyframe& a, const Keyframe& b) {
 
 inline bool is_same(const Landmark& a, const Landmark& b) {
   const auto same_observation = [](const Observation& o, const Observation& p) {
-    return o.keyframe == p.keyframe && o.slot == p.slot;
+    return o.keyframe == p.keyframe && o.slot == p.slot && o.cause == p.cause;
   };
   return a.id == b.id && a.anchor == b.anchor && a.position_in_anchor == b.position_in_anchor &&
          a.normal_in_anchor == b.normal_in_anchor &&
@@ -83,6 +83,9 @@ inline void expect_same(const MapVersion& a, const MapVersion& b) {
     EXPECT_TRUE(is_same(a.landmarks[i], b.landmarks[i])) << "landmark " << i;
   for (std::size_t i = 0; i < a.loops.size(); ++i)
     EXPECT_TRUE(is_same(a.loops[i], b.loops[i])) << "loop " << i;
+  ASSERT_EQ(a.doubted_loops.size(), b.doubted_loops.size());
+  for (std::size_t i = 0; i < a.doubted_loops.size(); ++i)
+    EXPECT_TRUE(is_same(a.doubted_loops[i], b.doubted_loops[i])) << "doubted loop " << i;
 }
 
 inline void expect_same(const MapExtras& a, const MapExtras& b) {

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <set>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/scene/observations.hpp>
+#include <samewhere/scene/withdraw.hpp>
+
+namespace samewhere::scene {
+namespace {
+
+using Causes = std::set<core::CandidateId>;
+
+void remove_edges(MapVersion& map, const Causes& causes) {
+  for (const auto& cause : causes) {
+    const auto is_of_it = [&](const LoopEdge& loop) { return loop.cause == cause; };
+    const std::size_t num_removed =
+        std::erase_if(map.loops, is_of_it) + std::erase_if(map.doubted_loops, is_of_it);
+    core::require(cause.is_valid() && num_removed > 0, "a loop that is withdrawn is in the map");
+  }
+}
+
+// Slots of live landmarks go with their observations; merged and culled ones have none.
+void remove_observations(MapVersion& map, const Causes& causes, std::size_t landmark_index) {
+  const auto is_caused = [&](const Observation& o) { return causes.contains(o.cause); };
+  const auto& known = map.landmarks[landmark_index].observations;
+  if (std::none_of(known.begin(), known.end(), is_caused)) return;
+  Landmark& landmark = map.landmarks.edit(landmark_index);
+  const bool was_live = is_live(landmark);
+  for (const auto& o : landmark.observations)
+    if (was_live && is_caused(o)) set_slot(map, o, core::LandmarkId{});
+  std::erase_if(landmark.observations, is_caused);
+  if (landmark.observations.empty()) {
+    landmark.is_culled = landmark.is_culled || was_live;
+  } else if (was_live) {
+    look_as_seen(map, landmark, landmark.observations.back());
+  }
+}
+
+// Per merge of the map. `to` stands for the whole that came out of a merge until it is merged
+// itself.
+std::vector<bool> merges_to_take_back(const MapVersion& map, const Causes& causes,
+                                      const std::vector<core::LandmarkId>& unmerged) {
+  const std::set<core::LandmarkId> named(unmerged.begin(), unmerged.end());
+  std::set<core::LandmarkId> doubtful;  // wholes with a part that is taken back
+  std::vector<bool> is_taken_back;
+  for (std::size_t i = 0; i < map.merges.size(); ++i) {
+    const Merge& made = map.merges[i];
+    is_taken_back.push_back(causes.contains(made.cause) || named.contains(made.from) ||
+                            doubtful.contains(made.from) || doubtful.contains(made.to));
+    if (is_taken_back.back()) doubtful.insert(made.to);
+  }
+  return is_taken_back;
+}
+
+// What a culled landmark still can show it shows again.
+void revive(MapVersion& map, core::LandmarkId id) {
+  if (!map.at(id).is_culled) return;
+  Landmark& landmark = map.landmarks.edit(id.index());
+  std::erase_if(landmark.observations, [&](const Observation& o) {
+    return !is_live(map.at(o.keyframe)) || shown_at(map, o).is_valid();
+  });
+  for (const auto& o : landmark.observations) set_slot(map, o, id);
+  landmark.is_culled = landmark.observations.empty();
+}
+
+// Whoever shows there does so no longer.
+void free_slot(MapVersion& map, const Observation& observation) {
+  const core::LandmarkId shown = shown_at(map, observation);
+  if (!shown.is_valid()) return;
+  Landmark& landmark = map.landmarks.edit(shown.index());
+  std::erase_if(landmark.observations,
+                [&](const Observation& o) { return o.keyframe == observation.keyframe; });
+  landmark.is_culled = landmark.observations.empty();
+  set_slot(map, observation, core::LandmarkId{});
+}
+
+// The later merges of both are taken back already: `to` is merged into nobody.
+void take_back(MapVersion& map, const Merge& made) {
+  revive(map, made.to);
+  Landmark& from = map.landmarks.edit(made.from.index());
+  core::require(from.merged_into == made.to, "a merge that is taken back is the last of its kind");
+  std::erase_if(from.observations,
+                [&](const Observation& o) { return !is_live(map.at(o.keyframe)); });
+  for (const auto& o : from.observations) {
+    free_slot(map, o);
+    set_slot(map, o, made.from);
+  }
+  from.merged_into = core::LandmarkId{};
+  from.is_culled = from.observations.empty();
+}
+
+void take_back(MapVersion& map, const std::vector<bool>& is_taken_back) {
+  std::vector<Merge> kept;
+  for (std::size_t i = 0; i < is_taken_back.size(); ++i)
+    if (!is_taken_back[i]) kept.push_back(map.merges[i]);
+  for (std::size_t i = is_taken_back.size(); i-- > 0;)
+    if (is_taken_back[i]) take_back(map, map.merges[i]);
+  const auto first = std::find(is_taken_back.begin(), is_taken_back.end(), true);
+  const auto num_before = static_cast<std::size_t>(first - is_taken_back.begin());
+  map.merges.shrink(num_before);
+  for (std::size_t i = num_before; i < kept.size(); ++i) map.merges.push_back(kept[i]);
+}
+
+}  // namespace
+
+void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
+              const std::vector<core::LandmarkId>& unmerged) {
+  if (loops.empty() && unmerged.empty()) return;
+  for (const auto& id : unmerged)
+    core::require(map.at(id).merged_into.is_valid(), "a landmark that is unmerged was merged");
+  const Causes causes(loops.begin(), loops.end());
+  remove_edges(map, causes);
+  if (!causes.empty())
+    for (std::size_t i = 0; i < map.landmarks.size(); ++i) remove_observations(map, causes, i);
+  take_back(map, merges_to_take_back(map, causes, unmerged));
+}
+
+}  // namespace samewhere::scene

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include <samewhere/scene/map_version.hpp>
+
+namespace samewhere::scene {
+
+// Takes loops back with all that was done to landmarks for them, and merges of single landmarks (by
+// what was merged, not by what it went into).
+//
+// - The loop edges of these causes go, doubted ones too, and the observations that bear them.
+// - Merges of these causes are taken back, and so is every later merge, whatever its cause, of a
+//   landmark that one of them had a part in: it may have been made for the sake of the wrong part.
+//   So the landmarks that these merges touched are one exactly where they were before.
+// - Who comes back shows again wherever it showed when it was merged, but in keyframes that were
+//   culled since. What it had gone into, if culled since, comes back with what is still free.
+//
+// Poses and positions stay. Throws ContractError for a cause of no loop edge of the map and for a
+// landmark that is not merged.
+void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
+              const std::vector<core::LandmarkId>& unmerged);
+
+}  // namespace samewhere::scene

@@ -1,0 +1,313 @@
+#include <algorithm>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/scene/test_map_file.hpp>
+
+namespace samewhere::scene {
+namespace {
+
+const core::CandidateId kLie(1000);
+const core::CandidateId kTruth(1001);
+
+// All that the map says of which landmarks are one and what shows them, without poses.
+struct Partition {
+  std::vector<std::vector<core::LandmarkId>> slots;
+  std::vector<std::vector<std::tuple<core::KeyframeId, int, core::CandidateId>>> observations;
+  std::vector<core::LandmarkId> merged_into;
+  std::vector<bool> is_culled;
+  bool operator==(const Partition&) const = default;
+};
+
+Partition partition_of(const MapVersion& map) {
+  Partition partition;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
+    partition.slots.push_back(map.keyframes[i].slots);
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    const Landmark& landmark = map.landmarks[i];
+    auto& observations = partition.observations.emplace_back();
+    for (const auto& o : landmark.observations)
+      observations.emplace_back(o.keyframe, o.slot, o.cause);
+    std::sort(observations.begin(), observations.end());
+    partition.merged_into.push_back(landmark.merged_into);
+    partition.is_culled.push_back(landmark.is_culled);
+  }
+  return partition;
+}
+
+// Which landmark stands for each.
+std::vector<core::LandmarkId> survivors(const MapVersion& map, std::size_t num_landmarks) {
+  std::vector<core::LandmarkId> ids;
+  for (std::size_t i = 0; i < num_landmarks; ++i)
+    ids.push_back(survivor_of(map, core::LandmarkId(i)).id);
+  return ids;
+}
+
+void expect_slots_and_observations_agree(const MapVersion& map) {
+  std::size_t num_shown = 0;
+  std::size_t num_observations = 0;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
+    for (const auto& id : map.keyframes[i].slots) num_shown += id.is_valid() ? 1 : 0;
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    if (!is_live(map.landmarks[i])) continue;
+    num_observations += map.landmarks[i].observations.size();
+    for (const auto& o : map.landmarks[i].observations) {
+      const Keyframe& keyframe = map.at(o.keyframe);
+      EXPECT_TRUE(is_live(keyframe));
+      EXPECT_EQ(keyframe.slots[static_cast<std::size_t>(o.slot)], map.landmarks[i].id);
+    }
+  }
+  EXPECT_EQ(num_shown, num_observations);
+}
+
+class Withdrawing : public MapFiles {
+ protected:
+  // A map of random edits, and a wrong loop about to join its first keyframe and its last.
+  void begin(std::uint64_t seed) {
+    random_ = core::Random(seed);
+    map_ = {};
+    RandomEdits edits(seed);
+    for (int i = 0; i < 6; ++i) map_ = apply(std::move(map_), edits.next(map_));
+    for (int i = 0; i < 3; ++i) add_rich_keyframe(seed);
+    lie_ = {map_.keyframes.back().id, core::KeyframeId(0), random_pose(random_),
+            random_information(random_), kLie};
+    num_before_ = map_.landmarks.size();
+  }
+
+  // Every second feature shows a landmark of its own.
+  void add_rich_keyframe(std::uint64_t seed) {
+    Edit edit;
+    Keyframe keyframe;
+    keyframe.id = core::KeyframeId(map_.keyframes.size());
+    keyframe.view = features::test_view(features::test_world(seed, 400),
+                                        static_cast<int>(keyframe.id.index()), {});
+    keyframe.odometry = {core::KeyframeId(0), random_pose(random_), random_information(random_)};
+    keyframe.slots.resize(static_cast<std::size_t>(keyframe.view.features->size()));
+    for (std::size_t slot = 0; slot < keyframe.slots.size(); slot += 2) {
+      Landmark landmark;
+      landmark.id = core::LandmarkId(map_.landmarks.size() + edit.landmarks.size());
+      landmark.anchor = keyframe.id;
+      landmark.position_in_anchor = {0.0, 0.0, random_.uniform() + 1.0};
+      landmark.observations = {{keyframe.id, static_cast<int>(slot)}};
+      keyframe.slots[slot] = landmark.id;
+      edit.landmarks.push_back(landmark);
+    }
+    edit.keyframes = {keyframe};
+    map_ = apply(std::move(map_), edit);
+  }
+
+  core::LandmarkId any_live() {
+    core::LandmarkId id;
+    do id = core::LandmarkId(random_.index(num_before_));
+    while (!is_live(map_.at(id)));
+    return id;
+  }
+
+  bool merge(core::LandmarkId from, core::LandmarkId to, core::CandidateId cause) {
+    if (from == to || !is_live(map_.at(from)) || !is_live(map_.at(to))) return false;
+    Edit edit;
+    edit.merges = {{from, to, cause}};
+    map_ = apply(std::move(map_), edit);
+    return true;
+  }
+
+  // A landmark seen in a free slot of a keyframe that did not know.
+  void see(core::LandmarkId id, core::CandidateId cause) {
+    const Keyframe& keyframe = map_.keyframes[random_.index(map_.keyframes.size())];
+    if (keyframe.slots.empty()) return;
+    const auto slot = random_.index(keyframe.slots.size());
+    const auto& observations = map_.at(id).observations;
+    if (!is_live(keyframe) || keyframe.slots[slot].is_valid() ||
+        std::any_of(observations.begin(), observations.end(),
+                    [&](const Observation& o) { return o.keyframe == keyframe.id; }))
+      return;
+    Edit edit;
+    edit.sightings = {{id, {keyframe.id, static_cast<int>(slot), cause}}};
+    map_ = apply(std::move(map_), edit);
+  }
+
+  // The wrong loop merges and sees; mapping merges on, always with a part that the loop merged.
+  void lie_and_follow() {
+    Edit edge;
+    edge.loops = {lie_};
+    map_ = apply(std::move(map_), edge);
+    for (int i = 0; i < 15; ++i) {
+      const core::LandmarkId one = any_live();
+      const core::LandmarkId other = any_live();
+      const bool is_merged = merge(one, other, kLie);
+      if (is_merged && random_.index(2) == 0) merge(other, any_live(), {});
+      if (is_merged && random_.index(2) == 0) merge(any_live(), survivor_of(map_, one).id, kTruth);
+      see(any_live(), kLie);
+    }
+  }
+
+  MapVersion without_lie() const {
+    Edit edit;
+    edit.withdrawn_loops = {kLie};
+    return apply(map_, edit);
+  }
+
+  core::Random random_{0};
+  MapVersion map_;
+  LoopEdge lie_;
+  std::size_t num_before_ = 0;
+};
+
+TEST_F(Withdrawing, ALoopTakesAllThatItCausedWithIt) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    begin(seed);
+    const MapVersion before = map_;
+    lie_and_follow();
+    ASSERT_GT(map_.merges.size(), before.merges.size() + 10);
+    const MapVersion after = without_lie();
+    EXPECT_TRUE(partition_of(after) == partition_of(before));
+    EXPECT_EQ(after.loops.size(), before.loops.size());
+    ASSERT_EQ(after.merges.size(), before.merges.size());
+    for (std::size_t i = 0; i < before.merges.size(); ++i)
+      EXPECT_TRUE(is_same(after.merges[i], before.merges[i]));
+    EXPECT_FALSE(partition_of(map_) == partition_of(before)) << "it changed nothing";
+  }
+}
+
+TEST_F(Withdrawing, WhatWasCulledOrCameMeanwhileDoesNotChangeWhichLandmarksAreOne) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    begin(seed);
+    const auto before = survivors(map_, num_before_);
+    lie_and_follow();
+    RandomEdits edits(seed + 100);
+    Edit later = edits.next(map_);  // a keyframe with sightings, culls, outliers of bundles
+    later.merges.clear();
+    map_ = apply(std::move(map_), later);
+    Edit cull;
+    for (int i = 0; i < 10; ++i) cull.culled_landmarks.push_back(any_live());
+    for (std::size_t i = 1; i + 1 < map_.keyframes.size() && cull.culled_keyframes.empty(); ++i) {
+      const core::KeyframeId id(i);
+      const bool is_held = std::any_of(map_.loops.begin(), map_.loops.end(), [&](const auto& l) {
+        return l.query == id || l.match == id;
+      });
+      if (is_live(map_.at(id)) && !is_held) cull.culled_keyframes = {id};
+    }
+    map_ = apply(std::move(map_), cull);
+    const MapVersion after = without_lie();
+    EXPECT_EQ(survivors(after, num_before_), before);
+    expect_slots_and_observations_agree(after);
+  }
+}
+
+TEST_F(Withdrawing, MergesThatHaveNothingToDoWithItStay) {
+  begin(3);
+  const auto before = survivors(map_, num_before_);
+  ASSERT_TRUE(merge(any_live(), any_live(), kLie));
+  const Merge lie = map_.merges.back();
+  Edit edge;
+  edge.loops = {lie_};
+  map_ = apply(std::move(map_), edge);
+  core::LandmarkId from = any_live();
+  core::LandmarkId to = any_live();
+  while (from == lie.to) from = any_live();
+  while (to == lie.to || to == from) to = any_live();
+  ASSERT_TRUE(merge(from, to, {}));
+  const MapVersion after = without_lie();
+  EXPECT_EQ(after.merges.size(), map_.merges.size() - 1);
+  EXPECT_EQ(after.at(from).merged_into, to);
+  EXPECT_EQ(survivor_of(after, lie.from).id, before[lie.from.index()]);
+}
+
+TEST_F(Withdrawing, AMergedLandmarkComesBackAloneWithItsLaterMerges) {
+  begin(4);
+  const MapVersion before = map_;
+  const core::LandmarkId a = any_live();
+  core::LandmarkId b = any_live();
+  while (b == a) b = any_live();
+  core::LandmarkId c = any_live();
+  while (c == a || c == b) c = any_live();
+  ASSERT_TRUE(merge(a, b, {}));
+  const Partition with_a_merged = partition_of(map_);
+  ASSERT_TRUE(merge(b, c, {}));
+  Edit unmerge;
+  unmerge.unmerged_landmarks = {b};
+  EXPECT_TRUE(partition_of(apply(map_, unmerge)) == with_a_merged) << "earlier ones stay";
+  unmerge.unmerged_landmarks = {a};
+  EXPECT_TRUE(partition_of(apply(map_, unmerge)) == partition_of(before)) << "later ones go";
+}
+
+TEST_F(Withdrawing, ItCanBeDoneAfterTheWayThroughAFile) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    begin(seed);
+    const Partition before = partition_of(map_);
+    const std::filesystem::path file_path = path(std::to_string(seed) + ".sw");
+    MapFile::create(file_path, {}).commit(map_, {});
+    lie_and_follow();
+    {
+      MapFile file = MapFile::open(file_path, MapAccess::kExtend);
+      file.load();
+      file.commit(map_, {});
+    }
+    MapFile file = MapFile::open(file_path, MapAccess::kExtend);
+    const StoredMap stored = file.load();
+    expect_same(stored.map, map_);
+    Edit edit;
+    edit.withdrawn_loops = {kLie};
+    edit.doubted_loops = {lie_};
+    const MapVersion after = apply(stored.map, edit);
+    EXPECT_TRUE(partition_of(after) == before);
+    file.commit(after, {});
+    expect_same(MapFile::open(file_path).load().map, after);
+  }
+}
+
+TEST_F(Withdrawing, ADoubtedLoopHoldsNothingUntilItIsBelieved) {
+  begin(5);
+  Edit doubt;
+  doubt.doubted_loops = {lie_};
+  const MapVersion doubted = apply(map_, doubt);
+  EXPECT_EQ(doubted.loops.size(), map_.loops.size());
+  EXPECT_EQ(doubted.doubted_loops.size(), map_.doubted_loops.size() + 1);
+  Edit believe;
+  believe.loops = {lie_};
+  const MapVersion believed = apply(doubted, believe);
+  EXPECT_EQ(believed.loops.size(), map_.loops.size() + 1);
+  EXPECT_EQ(believed.doubted_loops.size(), map_.doubted_loops.size());
+}
+
+TEST_F(Withdrawing, ACauseOfNoLoopAndALandmarkThatIsNotMergedAreBrokenPromises) {
+  begin(6);
+  Edit edit;
+  edit.withdrawn_loops = {core::CandidateId(123456)};
+  EXPECT_THROW(apply(map_, edit), core::ContractError);
+  edit.withdrawn_loops = {core::CandidateId{}};
+  EXPECT_THROW(apply(map_, edit), core::ContractError) << "mapping's own merges have no cause";
+  Edit unmerge;
+  unmerge.unmerged_landmarks = {any_live()};
+  EXPECT_THROW(apply(map_, unmerge), core::ContractError);
+}
+
+// A chain 0 - 1 - ... - 9 of odometry and a loop between 1 and 8.
+TEST(Ways, WhatIsNearOnlyByALoopRestsOnIt) {
+  const features::View view = features::test_view(features::test_world(1, 20), 0, {});
+  Edit edit;
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    Keyframe keyframe;
+    keyframe.id = core::KeyframeId(i);
+    keyframe.view = view;
+    keyframe.slots.resize(static_cast<std::size_t>(view.features->size()));
+    if (i > 0) keyframe.odometry = {core::KeyframeId(i - 1), {}, core::Matrix6d::Identity()};
+    edit.keyframes.push_back(keyframe);
+  }
+  const MapVersion chain = apply({}, edit);
+  const core::KeyframeId two(2);
+  EXPECT_FALSE(are_joined_by_loop(chain, core::KeyframeId(9), two));
+  Edit loop;
+  loop.loops = {{core::KeyframeId(8), core::KeyframeId(1), {}, core::Matrix6d::Identity(), kTruth}};
+  const MapVersion closed = apply(chain, loop);
+  EXPECT_TRUE(are_joined_by_loop(closed, core::KeyframeId(9), two));
+  EXPECT_TRUE(are_joined_by_loop(closed, two, core::KeyframeId(9)));
+  EXPECT_FALSE(are_joined_by_loop(closed, core::KeyframeId(9), core::KeyframeId(7)));
+  EXPECT_FALSE(are_joined_by_loop(closed, two, two));
+}
+
+}  // namespace
+}  // namespace samewhere::scene
