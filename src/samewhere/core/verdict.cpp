@@ -21,6 +21,10 @@ std::string_view name_of(Refusal refusal) {
       return "agreement";
     case Refusal::kOdometry:
       return "odometry";
+    case Refusal::kGraph:
+      return "graph";
+    case Refusal::kWithdrawn:
+      return "withdrawn";
   }
   throw ContractError("promise broken: every Refusal has a name");
 }

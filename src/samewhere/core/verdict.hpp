@@ -49,12 +49,25 @@ struct Evidence {
   std::optional<OdometryEvidence> odometry;
 };
 
-// Where in the funnel a candidate was refused, in the order of the checks.
-enum class Refusal { kSimilarity, kPause, kMatches, kInliers, kSpread, kAgreement, kOdometry };
+// Where in the funnel a candidate was refused, in the order of the checks. kGraph: the judge had
+// accepted it, but it does not go with odometry and the loops before it; kWithdrawn: nor with those
+// after it.
+enum class Refusal {
+  kSimilarity,
+  kPause,
+  kMatches,
+  kInliers,
+  kSpread,
+  kAgreement,
+  kOdometry,
+  kGraph,
+  kWithdrawn
+};
 
 inline constexpr Refusal kAllRefusals[] = {
-    Refusal::kSimilarity, Refusal::kPause,     Refusal::kMatches, Refusal::kInliers,
-    Refusal::kSpread,     Refusal::kAgreement, Refusal::kOdometry};
+    Refusal::kSimilarity, Refusal::kPause,  Refusal::kMatches,
+    Refusal::kInliers,    Refusal::kSpread, Refusal::kAgreement,
+    Refusal::kOdometry,   Refusal::kGraph,  Refusal::kWithdrawn};
 
 std::string_view name_of(Refusal refusal);
 

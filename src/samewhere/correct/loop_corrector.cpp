@@ -1,17 +1,64 @@
+#include <samewhere/core/errors.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
 
 namespace samewhere::correct {
 namespace {
 
-optimize::PoseEdge as_edge(const scene::LoopEdge& loop) {
+using scene::LoopEdge;
+using scene::MapVersion;
+
+optimize::PoseEdge as_edge(const LoopEdge& loop) {
   return {static_cast<int>(loop.match.index()), static_cast<int>(loop.query.index()),
           loop.match_from_query, loop.information, true};
 }
 
+std::vector<scene::PoseChange> moves_to(const MapVersion& map, const optimize::PoseGraph& graph) {
+  std::vector<scene::PoseChange> moves;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    if (!is_live(map.keyframes[i])) continue;
+    const core::Rigid3 new_from_old =
+        graph.world_from_node[i] * inverse(map.keyframes[i].world_from_body);
+    moves.push_back({map.keyframes[i].id, new_from_old});
+  }
+  return moves;
+}
+
+// Loops that the map does not believe yet: the doubted ones and the new one, which is the last.
+std::vector<LoopEdge> claims_of(const MapVersion& map, const LoopEdge& loop) {
+  std::vector<LoopEdge> claims;
+  for (const auto& doubted : map.doubted_loops)
+    if (const auto claim = between_holders(map, doubted)) claims.push_back(*claim);
+  claims.push_back(loop);
+  return claims;
+}
+
+// What the graph says of loops whose edges stand one after the other in it.
+struct Answer {
+  std::vector<LoopEdge> believed;
+  std::vector<BentLoop> bent;
+};
+
+Answer answer_on(const std::vector<LoopEdge>& loops, std::size_t first_edge,
+                 const optimize::PoseGraph& graph, const optimize::PoseGraphSummary& summary) {
+  Answer answer;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (summary.weights[first_edge + i] > 0.0) {
+      answer.believed.push_back(loops[i]);
+    } else {
+      answer.bent.push_back({loops[i], chi2_of(graph, graph.edges[first_edge + i])});
+    }
+  }
+  return answer;
+}
+
+bool is_of(const std::vector<BentLoop>& bent, core::CandidateId cause) {
+  return !bent.empty() && bent.back().loop.cause == cause;
+}
+
 }  // namespace
 
-optimize::PoseGraph pose_graph_of(const scene::MapVersion& map) {
+optimize::PoseGraph pose_graph_of(const MapVersion& map) {
   optimize::PoseGraph graph;
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
     const scene::Keyframe& keyframe = map.keyframes[i];
@@ -24,19 +71,55 @@ optimize::PoseGraph pose_graph_of(const scene::MapVersion& map) {
   return graph;
 }
 
-scene::Edit close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                       const optimize::Config& config) {
+std::optional<LoopEdge> between_holders(const MapVersion& map, const LoopEdge& loop) {
+  const scene::Holder match = holder_of(map, loop.match);
+  const scene::Holder query = holder_of(map, loop.query);
+  if (query.keyframe == match.keyframe) return std::nullopt;
+  return LoopEdge{
+      query.keyframe, match.keyframe,
+      match.holder_from_keyframe * loop.match_from_query * inverse(query.holder_from_keyframe),
+      loop.information, loop.cause};
+}
+
+Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::Config& config) {
+  core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
   optimize::PoseGraph graph = pose_graph_of(map);
-  graph.edges.push_back(as_edge(loop));
+  const std::size_t num_before = graph.edges.size();
+  const std::vector<LoopEdge> claims = claims_of(map, loop);
+  for (const auto& claim : claims) graph.edges.push_back(as_edge(claim));
+  const optimize::PoseGraphSummary summary = solve_pose_graph(graph, config);
+
+  const Answer on_claims = answer_on(claims, num_before, graph, summary);
+  Closing closing;
+  closing.believed = on_claims.believed;
+  if (is_of(on_claims.bent, loop.cause)) {
+    closing.refused = on_claims.bent.back();
+    closing.edit.doubted_loops.push_back(loop);
+  }
+  if (closing.believed.empty()) return closing;  // nothing speaks against what was believed
+  closing.withdrawn = answer_on(map.loops, num_before - map.loops.size(), graph, summary).bent;
+  for (const auto& bent : closing.withdrawn) {
+    closing.edit.withdrawn_loops.push_back(bent.loop.cause);
+    closing.edit.doubted_loops.push_back(bent.loop);
+  }
+  closing.edit.loops = closing.believed;
+  closing.edit.pose_changes = moves_to(map, graph);
+  return closing;
+}
+
+scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
+  optimize::PoseGraph graph = pose_graph_of(map);
   solve_pose_graph(graph, config);
   scene::Edit edit;
-  edit.loops.push_back(loop);
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
-    if (!is_live(map.keyframes[i])) continue;
-    const core::Rigid3 new_from_old =
-        graph.world_from_node[i] * inverse(map.keyframes[i].world_from_body);
-    edit.pose_changes.push_back({map.keyframes[i].id, new_from_old});
-  }
+  edit.pose_changes = moves_to(map, graph);
+  return edit;
+}
+
+scene::Edit withdraw_loop(const MapVersion& map, core::CandidateId cause,
+                          const optimize::Config& config) {
+  scene::Edit edit;
+  edit.withdrawn_loops = {cause};
+  edit.pose_changes = solve_poses(apply(map, edit), config).pose_changes;
   return edit;
 }
 

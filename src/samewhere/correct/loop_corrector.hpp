@@ -1,18 +1,53 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include <samewhere/optimize/pose_graph.hpp>
 #include <samewhere/scene/map_version.hpp>
 
 namespace samewhere::correct {
 
-// Keyframes as nodes, by position, joined by their odometry and by the loops that the map knows.
+// Keyframes as nodes, by position, joined by their odometry and by the loops that the map believes.
 // Culled keyframes hang on no edge.
 optimize::PoseGraph pose_graph_of(const scene::MapVersion& map);
 
+// The same loop between the keyframes that its own two hang on by now. Nothing if both hang on one.
+std::optional<scene::LoopEdge> between_holders(const scene::MapVersion& map,
+                                               const scene::LoopEdge& loop);
+
+// A loop that the pose graph does not believe.
+struct BentLoop {
+  scene::LoopEdge loop;
+  double chi2 = 0.0;  // 6 degrees of freedom; beyond optimize::Config::loop_chi2
+};
+
+// What a new loop changes.
+struct Closing {
+  scene::Edit edit;
+  std::vector<scene::LoopEdge> believed;  // from now on: the new one, doubted ones. To be fused.
+  std::optional<BentLoop> refused;        // the new one, if it is not among them
+  std::vector<BentLoop> withdrawn;        // believed until now
+};
+
 // The edit that adds the loop edge and moves every keyframe to where odometry, refined by bundles,
 // and all loops fit best. The first keyframe stays; culled ones move with those that they hang on.
-// Throws ContractError if the loop names keyframes that are not there.
-scene::Edit close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                       const optimize::Config& config);
+// A loop that the pose graph does not believe (optimize/) is kept as a doubted one, and asked again
+// with every new loop: of two that contradict each other, nobody knows which one lies until a third
+// speaks. So a new loop may be refused, which moves nothing, and an older one withdrawn with all
+// that it caused, in the same edit. Only loss kGnc refuses or withdraws. Throws ContractError if
+// the loop names keyframes that are not there, or has no cause.
+Closing close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
+                   const optimize::Config& config);
+
+// The edit that moves every keyframe to where odometry and the loops of the map fit best.
+scene::Edit solve_poses(const scene::MapVersion& map, const optimize::Config& config);
+
+// The edit that takes a loop of the map back with all that it caused, and moves every keyframe to
+// where odometry and the other loops fit best. Landmarks that were seen or merged later because the
+// loop was there, without being caused by it, are left to map::part_places(). Throws ContractError
+// for a cause of no loop of the map, believed or doubted.
+scene::Edit withdraw_loop(const scene::MapVersion& map, core::CandidateId cause,
+                          const optimize::Config& config);
 
 }  // namespace samewhere::correct

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
@@ -54,6 +57,7 @@ scene::LoopEdge true_loop(const Walk& walk, int query, int match) {
   loop.match_from_query = inverse(walk.truth[static_cast<std::size_t>(match)]) *
                           walk.truth[static_cast<std::size_t>(query)];
   loop.information = 1e4 * core::Matrix6d::Identity();
+  loop.cause = core::CandidateId(static_cast<std::uint64_t>(100 * query + match));
   return loop;
 }
 
@@ -61,7 +65,7 @@ TEST(CloseLoop, ATrueLoopTakesTheDriftOut) {
   const Walk walk = square_walk(0.01);
   const double before = worst_error_m(walk, walk.map);
   const scene::MapVersion closed =
-      apply(walk.map, close_loop(walk.map, true_loop(walk, 40, 0), {}));
+      apply(walk.map, close_loop(walk.map, true_loop(walk, 40, 0), {}).edit);
   EXPECT_GT(before, 2.0);
   EXPECT_LT(worst_error_m(walk, closed), 0.25 * before);
   EXPECT_EQ(closed.loops.size(), 1U);
@@ -71,16 +75,104 @@ TEST(CloseLoop, ATrueLoopTakesTheDriftOut) {
 TEST(CloseLoop, TheFirstKeyframeStays) {
   const Walk walk = square_walk(0.01);
   const scene::MapVersion closed =
-      apply(walk.map, close_loop(walk.map, true_loop(walk, 38, 2), {}));
+      apply(walk.map, close_loop(walk.map, true_loop(walk, 38, 2), {}).edit);
   EXPECT_LT(core::log_r3so3(closed.keyframes[0].world_from_body).norm(), 1e-12);
 }
 
 TEST(CloseLoop, EarlierLoopsStillCount) {
   const Walk walk = square_walk(0.01);
-  const scene::MapVersion first = apply(walk.map, close_loop(walk.map, true_loop(walk, 40, 0), {}));
-  const scene::MapVersion second = apply(first, close_loop(first, true_loop(walk, 39, 1), {}));
+  const scene::MapVersion first =
+      apply(walk.map, close_loop(walk.map, true_loop(walk, 40, 0), {}).edit);
+  const scene::MapVersion second = apply(first, close_loop(first, true_loop(walk, 39, 1), {}).edit);
   EXPECT_LT(worst_error_m(walk, second), 1.2 * worst_error_m(walk, first));
   EXPECT_EQ(second.loops.size(), 2U);
+}
+
+// The query stands `shift_m` further along the world's x than it does.
+scene::LoopEdge lie(const Walk& walk, int query, int match, double shift_m) {
+  scene::LoopEdge loop = true_loop(walk, query, match);
+  const core::Rigid3 shift{Eigen::Quaterniond::Identity(), {shift_m, 0.0, 0.0}};
+  const auto at = [&](int i) { return walk.truth[static_cast<std::size_t>(i)]; };
+  loop.match_from_query = inverse(at(match)) * shift * at(query);
+  loop.cause = core::CandidateId(9000U + static_cast<std::uint64_t>(query));
+  return loop;
+}
+
+double rms_error_m(const Walk& walk, const scene::MapVersion& map) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < walk.truth.size(); ++i)
+    sum += (map.keyframes[i].world_from_body.translation - walk.truth[i].translation).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(walk.truth.size()));
+}
+
+bool has_loop(const std::vector<scene::LoopEdge>& loops, core::CandidateId cause) {
+  return std::any_of(loops.begin(), loops.end(),
+                     [&](const scene::LoopEdge& loop) { return loop.cause == cause; });
+}
+
+TEST(CloseLoop, AWrongLoopAmongTrueOnesIsRefusedAndMovesNothing) {
+  const Walk walk = square_walk(0.002);
+  scene::MapVersion map = walk.map;
+  for (const int query : {38, 39, 40})
+    map = apply(map, close_loop(map, true_loop(walk, query, 40 - query), {}).edit);
+  const Closing closing = close_loop(map, lie(walk, 37, 3, 2.0), {});
+  ASSERT_TRUE(closing.refused);
+  EXPECT_GT(closing.refused->chi2, optimize::Config{}.loop_chi2);
+  EXPECT_TRUE(closing.believed.empty() && closing.withdrawn.empty());
+  EXPECT_TRUE(closing.edit.pose_changes.empty() && closing.edit.loops.empty());
+  const scene::MapVersion after = apply(map, closing.edit);
+  EXPECT_EQ(after.loops.size(), 3U);
+  EXPECT_TRUE(has_loop(after.doubted_loops, closing.refused->loop.cause));
+}
+
+// The lie comes first: odometry alone leaves it room. What it merged goes with it.
+TEST(CloseLoop, AWrongLoopThatLaterOnesContradictIsWithdrawn) {
+  const Walk walk = square_walk(0.002);
+  const scene::LoopEdge wrong = lie(walk, 36, 3, 0.8);
+  const Closing believed = close_loop(walk.map, wrong, {});
+  ASSERT_FALSE(believed.refused) << "without a believed lie this shows nothing";
+  scene::MapVersion map = apply(walk.map, believed.edit);
+  scene::MapVersion never = walk.map;
+  bool is_withdrawn = false;
+  for (const int query : {37, 38, 39, 40}) {
+    const scene::LoopEdge loop = true_loop(walk, query, 40 - query);
+    const Closing closing = close_loop(map, loop, {});
+    for (const auto& bent : closing.withdrawn) {
+      EXPECT_EQ(bent.loop.cause, wrong.cause);
+      EXPECT_GT(bent.chi2, optimize::Config{}.loop_chi2);
+      is_withdrawn = true;
+    }
+    map = apply(map, closing.edit);
+    never = apply(never, close_loop(never, loop, {}).edit);
+  }
+  EXPECT_TRUE(is_withdrawn);
+  EXPECT_FALSE(has_loop(map.loops, wrong.cause));
+  EXPECT_TRUE(has_loop(map.doubted_loops, wrong.cause));
+  EXPECT_EQ(map.loops.size(), 4U) << "what it had cast doubt on is believed again";
+  EXPECT_LT(rms_error_m(walk, map), 1.02 * rms_error_m(walk, never));
+  EXPECT_GT(rms_error_m(walk, apply(walk.map, believed.edit)), 2.0 * rms_error_m(walk, never));
+}
+
+TEST(WithdrawLoop, AnyLoopCanBeTakenBackWhateverCameAfterIt) {
+  const Walk walk = square_walk(0.01);
+  const scene::LoopEdge first = true_loop(walk, 38, 2);
+  const scene::LoopEdge second = true_loop(walk, 40, 0);
+  scene::MapVersion both = apply(walk.map, close_loop(walk.map, first, {}).edit);
+  both = apply(both, close_loop(both, second, {}).edit);
+  const scene::MapVersion after = apply(both, withdraw_loop(both, first.cause, {}));
+  const scene::MapVersion never = apply(walk.map, close_loop(walk.map, second, {}).edit);
+  ASSERT_EQ(after.loops.size(), 1U);
+  EXPECT_EQ(after.loops[0].cause, second.cause);
+  EXPECT_TRUE(after.doubted_loops.empty()) << "who takes a loop back means it";
+  for (std::size_t i = 0; i < walk.truth.size(); ++i) {
+    EXPECT_LT((after.keyframes[i].world_from_body.translation -
+               never.keyframes[i].world_from_body.translation)
+                  .norm(),
+              0.003);
+  }
+  const scene::MapVersion none = apply(after, withdraw_loop(after, second.cause, {}));
+  EXPECT_NEAR(worst_error_m(walk, none), worst_error_m(walk, walk.map), 0.003);
+  EXPECT_THROW(withdraw_loop(after, first.cause, {}), core::ContractError) << "withdrawn once";
 }
 
 TEST(CloseLoop, ALoopToAKeyframeThatIsNotThereIsABrokenPromise) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -30,6 +31,14 @@ std::vector<evaluate::AcceptedLoop> accepted_loops(const report::RunRecord& reco
   return loops;
 }
 
+int count_refused(const report::RunRecord& record, core::Refusal stage) {
+  const auto rows = report::final_rows(record.ledger);
+  return static_cast<int>(std::count_if(rows.begin(), rows.end(), [&](const auto* row) {
+    const auto* rejection = std::get_if<core::Rejection>(&row->verdict);
+    return rejection != nullptr && rejection->stage == stage;
+  }));
+}
+
 std::vector<evaluate::Match> as_matches(const std::vector<report::ScoredPair>& pairs) {
   std::vector<evaluate::Match> matches;
   for (const auto& pair : pairs) {
@@ -52,7 +61,9 @@ SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
           static_cast<int>(report::final_rows(record.ledger).size()),
           accepted_loops(record),
           is_scale_free,
-          {}};
+          {},
+          count_refused(record, core::Refusal::kGraph),
+          count_refused(record, core::Refusal::kWithdrawn)};
 }
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth) {
@@ -72,6 +83,8 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory, 1.0, scale);
   evaluation.num_candidates = findings.num_candidates;
   evaluation.loops = evaluate::check_loops(findings.loops, truth);
+  evaluation.num_refused_by_graph = findings.num_refused_by_graph;
+  evaluation.num_withdrawn = findings.num_withdrawn;
   evaluation.knows_impostors = !truth.impostors.empty();
   for (const auto& [num_edges, motions] : findings.odometry_chains) {
     if (const auto found = evaluate::consistency(motions, truth.trajectory))
@@ -153,6 +166,11 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
        fmt::format("{} / {} / {}", loops.num_right, loops.num_wrong, loops.num_unknown)});
   if (evaluation.knows_impostors) {
     figures.push_back({"of the wrong ones, impostors", std::to_string(loops.num_impostors)});
+  }
+  if (evaluation.num_refused_by_graph + evaluation.num_withdrawn > 0) {
+    figures.push_back(
+        {"loops refused by the pose graph: at once / later",
+         fmt::format("{} / {}", evaluation.num_refused_by_graph, evaluation.num_withdrawn)});
   }
   return figures;
 }

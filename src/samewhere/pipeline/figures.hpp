@@ -26,6 +26,9 @@ struct SlamFindings {
   bool is_scale_free = false;  // monocular: aligned with a scale
   // Odometry by the number of edges that it is composed of; empty if not known, or without a scale.
   std::map<int, std::vector<evaluate::MeasuredMotion>> odometry_chains;
+  // Loops of the judge that the pose graph does not believe, by when it found out.
+  int num_refused_by_graph = 0;
+  int num_withdrawn = 0;
 };
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free);
@@ -41,6 +44,8 @@ struct SlamEvaluation {
   std::optional<evaluate::RpeResult> rpe;  // over 1 s
   int num_candidates = 0;
   evaluate::LoopCheck loops;
+  int num_refused_by_graph = 0;
+  int num_withdrawn = 0;
   bool knows_impostors = false;                      // whether the truth names any
   std::map<int, evaluate::Consistency> drift_model;  // by the number of edges
 };

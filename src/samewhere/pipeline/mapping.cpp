@@ -1,11 +1,15 @@
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/map/cull.hpp>
 #include <samewhere/map/fuse.hpp>
 #include <samewhere/map/local_bundle.hpp>
+#include <samewhere/map/part.hpp>
 #include <samewhere/map/triangulate.hpp>
 #include <samewhere/pipeline/mapping.hpp>
+#include <samewhere/pipeline/withdrawal.hpp>
 
 namespace samewhere::pipeline {
 
@@ -35,10 +39,12 @@ void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& re
 }
 
 void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) {
-  hear_loops(config_.map.loop_lag_keyframes - 1);
+  const bool were_parted = hear_loops(config_.map.loop_lag_keyframes - 1);
   {
     const core::ScopedTimer timer(timings_, "map");
-    apply(map::add_keyframe(map_, message.tracked));
+    apply(map::add_keyframe(map_, were_parted
+                                      ? map::without_parted(map_, message.tracked, config_.features)
+                                      : message.tracked));
   }
   connect_newest();
   reply({.map = map_, .place = {}});
@@ -88,31 +94,78 @@ void Mapping::ask_for_loops(const cv::Mat& image) {
   ++num_unheard_;
 }
 
-void Mapping::hear_loops(int max_unheard) {
+bool Mapping::hear_loops(int max_unheard) {
+  bool were_parted = false;
   for (; num_unheard_ > max_unheard; --num_unheard_) {
     const LoopAnswer answer = loops_.receive();
     note(answer);
-    for (const auto& loop : answer.loops) correct(loop);
+    for (const auto& loop : answer.loops) were_parted |= correct(loop);
   }
+  return were_parted;
 }
 
 void Mapping::note(const LoopAnswer& answer) {
   if (answer.descriptor) news_.descriptors.push_back(*answer.descriptor);
   news_.rows.insert(news_.rows.end(), answer.rows.begin(), answer.rows.end());
+  for (const auto& row : answer.rows)
+    if (core::is_loop(row.verdict)) accepted_.insert_or_assign(row.candidate.id, row);
 }
 
 // The past must be corrected, and what both places show is one.
-void Mapping::correct(const scene::LoopEdge& loop) {
+bool Mapping::correct(const scene::LoopEdge& heard) {
   const core::ScopedTimer timer(timings_, "correct");
-  const scene::Holder match = holder_of(map_, loop.match);
-  const scene::Holder query = holder_of(map_, loop.query);
-  if (query.keyframe == match.keyframe) return;  // both hang on one: nothing to correct
-  const scene::LoopEdge edge{
-      query.keyframe, match.keyframe,
-      match.holder_from_keyframe * loop.match_from_query * inverse(query.holder_from_keyframe),
-      loop.information, loop.cause};
-  apply(correct::close_loop(map_, edge, config_.optimize));
-  for (const auto& edit : map::fuse_across(map_, edge, config_.map, config_.features)) apply(edit);
+  const auto loop = correct::between_holders(map_, heard);
+  if (!loop) return false;  // both hang on one: nothing to correct
+  const correct::Closing closing = correct::close_loop(map_, *loop, config_.optimize);
+  think_again(closing, *loop);
+  if (closing.withdrawn.empty()) {
+    apply(closing.edit);
+  } else {
+    map_ = with_places_parted(map_, scene::apply(map_, closing.edit), config_);
+  }
+  for (const auto& believed : closing.believed)
+    for (const auto& edit : map::fuse_across(map_, believed, config_.map, config_.features))
+      apply(edit);
+  return !closing.withdrawn.empty();
+}
+
+void Mapping::think_again(const correct::Closing& closing, const scene::LoopEdge& newest) {
+  const auto bent_by = [&](const correct::BentLoop& bent) {
+    return fmt::format("its edge is bent by chi-square {:.1f}, above {:.1f}", bent.chi2,
+                       config_.optimize.loop_chi2);
+  };
+  if (closing.refused)
+    reject(closing.refused->loop, core::Refusal::kGraph, bent_by(*closing.refused));
+  for (const auto& bent : closing.withdrawn) {
+    reject(bent.loop, core::Refusal::kWithdrawn,
+           fmt::format("{}, since frames {} and {} are one place", bent_by(bent),
+                       map_.at(newest.query).view.frame.index(),
+                       map_.at(newest.match).view.frame.index()));
+  }
+  for (const auto& loop : closing.believed)
+    if (loop.cause != newest.cause) accept_again(loop);
+}
+
+void Mapping::reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason) {
+  core::LedgerRow row{{.id = loop.cause,
+                       .query = map_.at(loop.query).view.frame,
+                       .match = map_.at(loop.match).view.frame},
+                      {}};
+  const auto judged = accepted_.find(loop.cause);  // unless in an earlier session
+  if (judged != accepted_.end()) row = judged->second;
+  const core::Evidence evidence = core::evidence_of(row.verdict);
+  row.verdict = core::Rejection{loop.cause, evidence, stage, reason};
+  add_row(row);
+}
+
+void Mapping::accept_again(const scene::LoopEdge& loop) {
+  const auto judged = accepted_.find(loop.cause);
+  if (judged != accepted_.end()) add_row(judged->second);
+}
+
+void Mapping::add_row(const core::LedgerRow& row) {
+  news_.rows.push_back(row);
+  second_thoughts_.push_back(row);
 }
 
 void Mapping::add_frames(const std::vector<core::FramePose>& frames) {

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include <samewhere/core/timing.hpp>
+#include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/messages.hpp>
 
@@ -16,6 +20,8 @@ class Mapping {
   void take(const ToMapping& message, const MappingLink::Reply& reply);
 
   const scene::MapVersion& map() const { return map_; }
+  // Second thoughts about loops that the judge accepted, in the order of the judgements.
+  const core::Ledger& second_thoughts() const { return second_thoughts_; }
   const core::Timings& timings() const { return timings_; }
 
  private:
@@ -31,10 +37,16 @@ class Mapping {
   void refine_newest();
   // Have I seen this place before? The answer is heard later.
   void ask_for_loops(const cv::Mat& image);
-  // Loop closing's answers until so few are still to come; each corrects the past.
-  void hear_loops(int max_unheard);
+  // Loop closing's answers until so few are still to come; each corrects the past. Whether places
+  // that were one were parted.
+  bool hear_loops(int max_unheard);
   void note(const LoopAnswer& answer);
-  void correct(const scene::LoopEdge& loop);
+  bool correct(const scene::LoopEdge& heard);
+  // What the pose graph makes of the judge's verdicts goes into the ledger, too.
+  void think_again(const correct::Closing& closing, const scene::LoopEdge& newest);
+  void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);
+  void accept_again(const scene::LoopEdge& loop);
+  void add_row(const core::LedgerRow& row);
 
   void add_frames(const std::vector<core::FramePose>& frames);
   void keep_map();
@@ -47,6 +59,8 @@ class Mapping {
   scene::MapVersion map_;
   int num_unheard_ = 0;  // questions to loop closing whose answers are to come
   MapNews news_;         // since the map was kept
+  std::map<core::CandidateId, core::LedgerRow> accepted_;  // by the judge, in this session
+  core::Ledger second_thoughts_;
 };
 
 }  // namespace samewhere::pipeline

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <sstream>
 #include <string>
@@ -68,6 +69,12 @@ std::vector<evaluate::AcceptedLoop> accepted_loops(const Json& candidates,
   return loops;
 }
 
+int count_stage(const Json& candidates, core::Refusal stage) {
+  return static_cast<int>(std::count_if(
+      candidates.begin(), candidates.end(),
+      [&](const Json& candidate) { return candidate.value("stage", "") == core::name_of(stage); }));
+}
+
 std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
   std::istringstream lines(core::read_file(path));
   std::vector<report::ScoredPair> pairs;
@@ -90,9 +97,15 @@ SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_sca
   const std::vector<double> stamps_s = read_stamps(folder / "frames.csv");
   const Json candidates = read_loops(folder / "loops.json");
   try {
-    return {static_cast<int>(stamps_s.size()),       core::read_tum(folder / "trajectory.tum"),
-            core::read_tum(folder / "odometry.tum"), static_cast<int>(candidates.size()),
-            accepted_loops(candidates, stamps_s),    is_scale_free};
+    return {static_cast<int>(stamps_s.size()),
+            core::read_tum(folder / "trajectory.tum"),
+            core::read_tum(folder / "odometry.tum"),
+            static_cast<int>(candidates.size()),
+            accepted_loops(candidates, stamps_s),
+            is_scale_free,
+            {},
+            count_stage(candidates, core::Refusal::kGraph),
+            count_stage(candidates, core::Refusal::kWithdrawn)};
   } catch (const Json::exception& error) {
     throw core::InputError(fmt::format("{}: a candidate is not as expected: {}",
                                        (folder / "loops.json").string(), error.what()));

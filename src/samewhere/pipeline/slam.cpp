@@ -22,8 +22,10 @@ std::unique_ptr<core::Link<Message, Answer>> link_to(
 std::unique_ptr<LoopLink> link_to(LoopClosing& stage, const Config& config,
                                   const SlamHooks& hooks) {
   return link_to<ToLoopClosing, LoopAnswer>(
-      [&stage](const ToLoopClosing& message, const LoopLink::Reply& reply) {
-        reply(stage.answer(message));
+      [&stage, lie = hooks.lie](const ToLoopClosing& message, const LoopLink::Reply& reply) {
+        LoopAnswer answer = stage.answer(message);
+        if (lie) lie(message, answer);
+        reply(std::move(answer));
       },
       config.threads, config.map.loop_lag_keyframes, hooks.dawdle);
 }
@@ -86,6 +88,9 @@ void Slam::finish() {
   tracking_.finish();
   mapping_link_->finish();
   loop_link_->finish();
+  ledger_ = loop_closing_.ledger();
+  ledger_.insert(ledger_.end(), mapping_.second_thoughts().begin(),
+                 mapping_.second_thoughts().end());
   is_broken_ = false;
   is_finished_ = true;
 }
@@ -97,7 +102,7 @@ const scene::MapVersion& Slam::map() const {
 
 const core::Ledger& Slam::ledger() const {
   require_finished();
-  return loop_closing_.ledger();
+  return ledger_;
 }
 
 std::vector<core::Descriptor> Slam::descriptors() const {

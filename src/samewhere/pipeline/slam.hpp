@@ -11,10 +11,12 @@
 
 namespace samewhere::pipeline {
 
-// What the owner of a Slam may have done in its stages, in their threads. Both may be empty.
+// What the owner of a Slam may have done in its stages, in their threads. All may be empty.
 struct SlamHooks {
   KeepMap keep_map;
   core::Dawdle dawdle;  // for tests
+  // For tests: may put loops into what loop closing answers, in its thread.
+  std::function<void(const ToLoopClosing& question, LoopAnswer& answer)> lie;
 };
 
 // The whole system: frames in, poses, a map and a ledger of judged loops out. Three stages, each of
@@ -48,6 +50,7 @@ class Slam {
 
   // From here on: after finish().
   const scene::MapVersion& map() const;
+  // The judge's rows, and behind them what the pose graph made of them later.
   const core::Ledger& ledger() const;
   // What the views that loops are looked for among look like, oldest first.
   std::vector<core::Descriptor> descriptors() const;
@@ -64,6 +67,7 @@ class Slam {
   Mapping mapping_;
   std::unique_ptr<MappingLink> mapping_link_;
   Tracking tracking_;
+  core::Ledger ledger_;  // when it is finished
   bool is_finished_ = false;
   bool is_broken_ = false;  // a stage has thrown
 };

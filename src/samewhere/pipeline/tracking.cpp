@@ -23,6 +23,13 @@ bool is_weak(const map::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
 
+bool has_lost_a_loop(const scene::MapVersion& before, const scene::MapVersion& after) {
+  return std::any_of(before.loops.begin(), before.loops.end(), [&](const scene::LoopEdge& loop) {
+    return std::none_of(after.loops.begin(), after.loops.end(),
+                        [&](const scene::LoopEdge& o) { return o.cause == loop.cause; });
+  });
+}
+
 }  // namespace
 
 Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapping)
@@ -40,7 +47,7 @@ Tracking::Tracking(const Config& config, const scene::StoredMap& known, bool is_
                    MappingLink& mapping)
     : Tracking(config, DepthFrom::kSensor, mapping) {
   map_ = known.map;
-  num_keyframes_ = map_.keyframes.size();
+  num_keyframes_ = first_followed_ = map_.keyframes.size();
   is_map_fixed_ = is_map_fixed;
   std::uint16_t last_session = 0;
   for (const auto& frame : known.extras.frames)
@@ -57,7 +64,7 @@ void Tracking::feed(const core::Frame& frame) {
     if (under_way_ && under_way_->due_at_frame <= frames_.size()) see_kept();
     const features::View view = features::extract(frame, config_.features);
     tracked = locate(frame, view);
-    frames_.push_back(tracked ? tracked->pose
+    frames_.push_back(tracked ? by_odometry(tracked->pose)
                               : core::FramePose{.frame = view.frame, .stamp_s = view.stamp_s});
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
@@ -85,6 +92,7 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
     remember(*tracked);
   } else {
     last_.reset();
+    first_followed_ = num_keyframes_;
   }
   return tracked;
 }
@@ -159,12 +167,25 @@ void Tracking::follow(map::TrackedView& tracked) {
   if (most == num_shown.end()) return;
   if (most->first != local_map_.reference) look_around(most->first);
   core::FramePose& pose = tracked.pose;
-  if (most->first == pose.reference_keyframe) return;
-  const core::Rigid3 world_from_frame = world_from(pose);
-  pose.reference_keyframe = most->first;
-  pose.reference_from_frame = inverse(world_from_body(map_, most->first)) * world_from_frame;
+  if (most->first != pose.reference_keyframe) pose = relative_to(most->first, pose);
+}
+
+core::FramePose Tracking::relative_to(core::KeyframeId reference, core::FramePose pose) const {
+  pose.reference_from_frame = inverse(world_from_body(map_, reference)) * world_from(pose);
+  pose.reference_keyframe = reference;
   pose.information = track::odometry_information(
       pose.reference_from_frame, pose.status == core::FrameStatus::kWeak, config_.track.drift);
+  return pose;
+}
+
+core::FramePose Tracking::by_odometry(const core::FramePose& pose) {
+  const core::KeyframeId newest = map_.keyframes.back().id;
+  const core::KeyframeId reference = holder_of(map_, pose.reference_keyframe).keyframe;
+  if (newest.index() < first_followed_ || newest == reference || map_.loops.empty()) return pose;
+  const Way way{map_.number, newest, reference};
+  if (!last_way_ || last_way_->first != way)
+    last_way_ = {way, are_joined_by_loop(map_, newest, reference)};
+  return last_way_->second ? relative_to(newest, pose) : pose;
 }
 
 // The last step once more, relative to the reference of the local map.
@@ -255,12 +276,17 @@ void Tracking::keep(const map::TrackedView& tracked, const cv::Mat& image) {
   pose.reference_keyframe = added;
   pose.reference_from_frame = core::Rigid3{};
   const std::size_t position = frames_.size() - 1;
-  mapping_.send(AddKeyframe{tracked, image, unsent_frames()});
+  map::TrackedView followed = tracked;
+  followed.pose = by_odometry(tracked.pose);
+  mapping_.send(AddKeyframe{std::move(followed), image, unsent_frames()});
   under_way_ = {added, position + static_cast<std::size_t>(config_.map.visible_after_frames)};
 }
 
 void Tracking::see_kept() {
-  map_ = wait_for_mapping().map;
+  scene::MapVersion map = wait_for_mapping().map;
+  // the reference may be at the other end of the loop
+  if (last_ && has_lost_a_loop(map_, map)) last_->pose = by_odometry(last_->pose);
+  map_ = std::move(map);
   const core::KeyframeId kept = std::exchange(under_way_, std::nullopt)->keyframe;
   look_around(kept);
   if (last_ && last_->view.frame == map_.at(kept).view.frame) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <samewhere/core/frame.hpp>
@@ -55,6 +56,11 @@ class Tracking {
   // The reference goes along with the camera: it is the keyframe that shows most of what the view
   // shows, however old, and the local map is what lies around it.
   void follow(map::TrackedView& tracked);
+  core::FramePose relative_to(core::KeyframeId reference, core::FramePose pose) const;
+  // As odometry knows it: relative to the newest keyframe if the way from there to its reference
+  // takes a loop. What is kept of a frame rests on no loop, or it would stay behind if the loop
+  // were withdrawn, and a keyframe would hold the loop as if it were odometry.
+  core::FramePose by_odometry(const core::FramePose& pose);
   core::Rigid3 guessed_pose() const;
   void remember(const map::TrackedView& tracked);
 
@@ -94,8 +100,16 @@ class Tracking {
   bool is_map_fixed_ = false;
   scene::MapVersion map_;  // as it is visible
   scene::LocalMap local_map_;
-  std::uint64_t num_keyframes_ = 0;  // sent to mapping, or there before
-  std::uint64_t num_given_up_ = 0;   // of these, when the map began anew
+  std::uint64_t num_keyframes_ = 0;   // sent to mapping, or there before
+  std::uint64_t num_given_up_ = 0;    // of these, when the map began anew
+  std::uint64_t first_followed_ = 0;  // tracking was not lost since this one
+  struct Way {
+    std::uint64_t map_number = 0;
+    core::KeyframeId from;
+    core::KeyframeId to;
+    bool operator==(const Way&) const = default;
+  };
+  std::optional<std::pair<Way, bool>> last_way_;  // whether it takes a loop
   std::map<core::FrameId, core::KeyframeId> keyframe_of_;
   struct UnderWay {
     core::KeyframeId keyframe;

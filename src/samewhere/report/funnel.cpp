@@ -55,6 +55,10 @@ std::string_view question_of(core::Refusal refusal) {
       return "do both views find the same relative pose?";
     case core::Refusal::kOdometry:
       return "does it fit the path travelled?";
+    case core::Refusal::kGraph:
+      return "does it fit the loops before it?";
+    case core::Refusal::kWithdrawn:
+      return "does it fit the loops after it?";
   }
   throw core::ContractError("promise broken: every Refusal has a question");
 }
