@@ -5,6 +5,8 @@
 namespace samewhere::features {
 
 struct Config {
+  bool denoise = false;
+  bool equalize = false;
   int num_features = 1000;
   int num_levels = 8;
   double scale_factor = 1.2;
@@ -16,6 +18,10 @@ struct Config {
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit("denoise", config.denoise,
+        {.help = "median of 3 x 3 pixels, over the picture in which corners are looked for"});
+  visit("equalize", config.equalize,
+        {.help = "histogram equalisation of that picture, eq. (1)-(4), after `denoise`"});
   visit("num_features", config.num_features,
         {.help = "ORB features kept per picture", .min = 50, .max = 20000});
   visit("num_levels", config.num_levels,

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include <samewhere/core/grey.hpp>
 #include <samewhere/features/corners.hpp>
 #include <samewhere/features/describe.hpp>
 #include <samewhere/features/orb.hpp>
+#include <samewhere/features/preprocess.hpp>
 #include <samewhere/features/pyramid.hpp>
 #include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
@@ -90,7 +90,7 @@ void add_measured_depth(Features& features, const core::Frame& frame, const Conf
 
 void add_stereo_depth(Features& features, const std::vector<cv::Mat>& levels,
                       const core::Frame& frame, const Config& config) {
-  const std::vector<cv::Mat> right_levels = pyramid(core::as_grey(frame.images[1]), config);
+  const std::vector<cv::Mat> right_levels = pyramid(preprocess(frame.images[1], config), config);
   Config generous = config;
   generous.num_features *= kRightPerLeft;
   const Features right = features_of(right_levels, generous);
@@ -106,7 +106,7 @@ void add_stereo_depth(Features& features, const std::vector<cv::Mat>& levels,
 }  // namespace
 
 View extract(const core::Frame& frame, const Config& config) {
-  const cv::Mat grey = core::as_grey(frame.images.at(0));
+  const cv::Mat grey = preprocess(frame.images.at(0), config);
   const std::vector<cv::Mat> levels = pyramid(grey, config);
   auto features = std::make_shared<Features>(features_of(levels, config));
   add_camera(*features, frame);

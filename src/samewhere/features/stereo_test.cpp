@@ -79,6 +79,17 @@ TEST(Stereo, WhatIsNotInTheOtherPictureHasNoDepth) {
   EXPECT_LT(num_known, 0.05 * view.features->size());
 }
 
+// The second picture is prepared like the first, else what is compared has other levels.
+TEST(Stereo, EqualisedPicturesOfUnlikeExposureAgree) {
+  core::Frame frame = wall(12.0);
+  frame.images[1] = 0.3 * frame.images[1] + 20;
+  const View view = extract(frame, {.equalize = true});
+  const auto num_right = std::count_if(
+      view.features->depth_m.begin(), view.features->depth_m.end(),
+      [](float depth_m) { return std::abs(depth_m - kFocal_px * kBaseline_m / 12.0) < 0.1; });
+  EXPECT_GT(num_right, 0.5 * view.features->size());
+}
+
 TEST(Stereo, APairThatIsNotRectifiedIsRefused) {
   core::Rig turned = pair_rig();
   turned.body_from_camera[1].rotation = Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitY());

@@ -94,6 +94,13 @@ const core::PinholeRadtan& pinhole(const core::Camera& camera) {
   return std::get<PinholeRadtan>(camera);
 }
 
+Eigen::Matrix3d calibration_matrix(const core::Camera& camera) {
+  const PinholeRadtan& c = pinhole(camera);
+  Eigen::Matrix3d k;
+  k << c.fx_px, 0.0, c.cx_px, 0.0, c.fy_px, c.cy_px, 0.0, 0.0, 1.0;
+  return k;
+}
+
 double focal_px(const core::Camera& camera) {
   const PinholeRadtan& c = pinhole(camera);
   return 0.5 * (c.fx_px + c.fy_px);

@@ -30,6 +30,9 @@ Eigen::Vector3d bearing_of_undistorted(const core::Camera& camera,
 // The intrinsics that the ideal pinhole shares with the camera.
 const core::PinholeRadtan& pinhole(const core::Camera& camera);
 
+// K of eq. (17): pixels, homogeneous, of an ideal pinhole from points of its plane z = 1.
+Eigen::Matrix3d calibration_matrix(const core::Camera& camera);
+
 // Mean focal length: converts small angles to pixels.
 double focal_px(const core::Camera& camera);
 

@@ -32,6 +32,13 @@ TEST(Camera, WithoutDistortionItIsThePinholeOfEquation17) {
   EXPECT_EQ(undistort(camera, *pixel), *pixel);
 }
 
+TEST(Camera, TheCalibrationMatrixProjectsAsThePinholeDoes) {
+  const Eigen::Vector3d point(0.5, -0.25, 2.0);
+  const Eigen::Vector3d homogeneous = calibration_matrix(strong_camera()) * point;
+  EXPECT_LT((homogeneous.hnormalized() - *project_undistorted(strong_camera(), point)).norm(),
+            1e-9);
+}
+
 TEST(Camera, WhatIsBehindIsNotSeen) {
   EXPECT_FALSE(project(strong_camera(), {0.0, 0.0, -1.0}));
   EXPECT_FALSE(project(strong_camera(), {1.0, 0.0, 0.0}));

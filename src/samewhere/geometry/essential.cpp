@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/essential.hpp>
 #include <samewhere/geometry/two_view.hpp>
 
@@ -243,6 +244,11 @@ std::optional<RansacResult<Eigen::Matrix3d>> estimate_essential(const RayPairs& 
                                                                 core::Random& random) {
   core::require(pairs.first.size() == pairs.second.size(), "rays come in pairs");
   return ransac(EssentialRansac{pairs}, options, random);
+}
+
+Eigen::Matrix3d essential_from_fundamental(const Eigen::Matrix3d& fundamental,
+                                           const core::Camera& first, const core::Camera& second) {
+  return calibration_matrix(second).transpose() * fundamental * calibration_matrix(first);
 }
 
 std::array<core::Rigid3, 4> motions_of_essential(const Eigen::Matrix3d& essential) {

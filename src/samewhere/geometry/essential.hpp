@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <samewhere/core/rig.hpp>
 #include <samewhere/core/rigid3.hpp>
 #include <samewhere/geometry/ransac.hpp>
 #include <samewhere/geometry/ray_pairs.hpp>
@@ -26,8 +27,14 @@ std::optional<RansacResult<Eigen::Matrix3d>> estimate_essential(const RayPairs& 
                                                                 const RansacOptions& options,
                                                                 core::Random& random);
 
+// E = K2' F K1: what a fundamental matrix between undistorted pixels says of rays. Essential, that
+// is with two equal singular values and one of 0, only as far as F fits the calibration.
+Eigen::Matrix3d essential_from_fundamental(const Eigen::Matrix3d& fundamental,
+                                           const core::Camera& first, const core::Camera& second);
+
 // The four motions that explain an essential matrix; translations of length 1. Hartley and
-// Zisserman 2004, section 9.6.2.
+// Zisserman 2004, section 9.6.2. Of a matrix that is only nearly essential: the motions of the
+// nearest one that is.
 std::array<core::Rigid3, 4> motions_of_essential(const Eigen::Matrix3d& essential);
 
 // E = [t]x R.

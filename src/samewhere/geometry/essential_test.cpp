@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/essential.hpp>
 #include <samewhere/geometry/test_pairs.hpp>
 
@@ -55,6 +56,20 @@ TEST(Essential, SolutionsAreEssentialMatrices) {
     EXPECT_LT(std::abs(e.determinant()), 1e-9);
     const Eigen::Matrix3d square = e * e.transpose();
     EXPECT_LT((2.0 * square * e - square.trace() * e).norm(), 1e-8);
+  }
+}
+
+// Two cameras of unlike focal lengths and centres; F is that of its definition, K2^-T E K1^-1.
+TEST(Essential, OfAFundamentalMatrixGivesTheMotion) {
+  const core::Camera first = core::PinholeRadtan{640, 480, 500, 510, 320, 240};
+  const core::Camera second = core::PinholeRadtan{752, 480, 430, 425, 370, 250};
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    core::Random random(seed);
+    const core::Rigid3 truth = random_motion(random);
+    const Eigen::Matrix3d fundamental = calibration_matrix(second).inverse().transpose() *
+                                        essential_of(truth) * calibration_matrix(first).inverse();
+    const Eigen::Matrix3d essential = essential_from_fundamental(3.0 * fundamental, first, second);
+    EXPECT_LT(best_error_rad(essential, truth), 1e-6) << "seed " << seed;
   }
 }
 

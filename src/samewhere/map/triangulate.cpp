@@ -30,10 +30,7 @@ std::vector<int> free_features(const Keyframe& keyframe, bool with_depth) {
 }
 
 Eigen::Matrix3d normalised_from_pixel(const core::Camera& camera) {
-  const core::PinholeRadtan& c = geometry::pinhole(camera);
-  Eigen::Matrix3d k;
-  k << c.fx_px, 0.0, c.cx_px, 0.0, c.fy_px, c.cy_px, 0.0, 0.0, 1.0;
-  return k.inverse();
+  return geometry::calibration_matrix(camera).inverse();
 }
 
 // Two keyframes and how they stand to each other: `first` is the neighbour, `second` the new one.

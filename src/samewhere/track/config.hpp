@@ -26,8 +26,12 @@ inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
         {.help = "all errors times this while tracking is weak", .min = 1.0, .max = 100.0});
 }
 
+// What relates two views (two_view_model.hpp).
+enum class StartModel { kHomographyOrEssential, kFundamental };
+
 // How a camera without depth starts, from two views.
 struct StartConfig {
+  StartModel model = StartModel::kHomographyOrEssential;
   int min_matches = 100;
   int min_points = 60;
   double max_error_px = 2.0;
@@ -41,6 +45,10 @@ struct StartConfig {
 };
 
 inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
+  visit("model", config.model,
+        {.help = "of the two views, from which R and t are taken: the better of homography and "
+                 "essential matrix, or the fundamental matrix, eq. (18)-(22)",
+         .choices = {"homography_or_essential", "fundamental"}});
   visit(
       "min_matches", config.min_matches,
       {.help = "fewer matches of the two views are no start, and the later view becomes the first",
@@ -53,7 +61,9 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
   visit("ransac_iterations", config.ransac_iterations,
         {.help = "RANSAC samples of either model at most", .min = 1, .max = 100000});
   visit("min_homography_ratio", config.min_homography_ratio,
-        {.help = "share of the homography in the scores of both models from which it is chosen",
+        {.help =
+             "share of the homography in the scores of both models from which it is chosen, or the "
+             "fundamental matrix refused",
          .min = 0.0,
          .max = 1.0});
   visit("min_parallax_rad", config.min_parallax_rad,

@@ -7,9 +7,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/essential.hpp>
-#include <samewhere/geometry/homography.hpp>
 #include <samewhere/geometry/triangulation.hpp>
 #include <samewhere/track/start.hpp>
 
@@ -20,79 +18,6 @@ using core::Rigid3;
 using features::Match;
 using features::View;
 using geometry::RayPairs;
-
-geometry::RayPairs ray_pairs(const View& first, const View& second,
-                             const std::vector<Match>& matches) {
-  const auto bearing = [](const View& view, int feature) {
-    return geometry::bearing_of_undistorted(
-        view.rig->cameras[0],
-        view.features->undistorted_px[static_cast<std::size_t>(feature)].cast<double>());
-  };
-  RayPairs pairs{{}, {}, geometry::focal_px(first.rig->cameras[0])};
-  for (const auto& match : matches) {
-    pairs.first.push_back(bearing(first, match.first));
-    pairs.second.push_back(bearing(second, match.second));
-  }
-  return pairs;
-}
-
-// The score of a model in ORB-SLAM, eq. (2): what each error leaves of the largest one.
-template <class ErrorOf>
-double model_score(const RayPairs& pairs, double max_squared_px, const ErrorOf& error_of) {
-  constexpr double kLargest = 5.99;  // 95 % of chi-square with 2 degrees of freedom, sigma 1 px
-  double score = 0.0;
-  for (int i = 0; i < pairs.size(); ++i) {
-    const geometry::TransferError error = error_of(i);
-    if (error.in_first < max_squared_px) score += kLargest - error.in_first;
-    if (error.in_second < max_squared_px) score += kLargest - error.in_second;
-  }
-  return score;
-}
-
-double homography_score(const geometry::Homography& homography, const RayPairs& pairs) {
-  return model_score(pairs, 5.99, [&](int i) { return transfer_error(homography, pairs, i); });
-}
-
-double essential_score(const Eigen::Matrix3d& essential, const RayPairs& pairs) {
-  return model_score(pairs, 3.84, [&](int i) { return epipolar_error(essential, pairs, i); });
-}
-
-// Motions of which one is the true one, and the pairs that agree with the model behind them.
-struct Model {
-  std::vector<Rigid3> motions;  // second_from_first, translations of length 1
-  std::vector<int> inliers;
-  bool is_planar = false;
-};
-
-Model planar_model(const geometry::RansacResult<geometry::Homography>& homography) {
-  Model model{{}, homography.inliers, true};
-  for (const auto& motion : motions_of(homography.model)) {
-    const Rigid3& moved = motion.second_from_first;
-    model.motions.push_back({moved.rotation, moved.translation.normalized()});
-  }
-  return model;
-}
-
-Model general_model(const geometry::RansacResult<Eigen::Matrix3d>& essential) {
-  const auto motions = geometry::motions_of_essential(essential.model);
-  return {{motions.begin(), motions.end()}, essential.inliers, false};
-}
-
-// The model that explains the pairs best. Without motions: none, or that of a rotation.
-Model choose_model(const RayPairs& pairs, const StartConfig& config, core::Random& random) {
-  const geometry::RansacOptions options{.max_error_px = config.max_error_px,
-                                        .max_iterations = config.ransac_iterations,
-                                        .min_inliers = config.min_points};
-  const auto homography = estimate_homography(pairs, options, random);
-  const auto essential = estimate_essential(pairs, options, random);
-  if (!homography && !essential) return {};
-  if (!homography) return general_model(*essential);
-  if (!essential) return planar_model(*homography);
-  const double score_h = homography_score(homography->model, pairs);
-  const double score_e = essential_score(essential->model, pairs);
-  return score_h > config.min_homography_ratio * (score_h + score_e) ? planar_model(*homography)
-                                                                     : general_model(*essential);
-}
 
 // The pairs that a motion explains: their rays meet in front of both cameras, close enough to where
 // they were seen.
@@ -132,7 +57,8 @@ struct BestMotion {
   std::size_t num_explained_by_second = 0;  // of the pairs, by the second best motion
 };
 
-BestMotion best_motion(const RayPairs& pairs, const Model& model, const StartConfig& config) {
+BestMotion best_motion(const RayPairs& pairs, const TwoViewModel& model,
+                       const StartConfig& config) {
   BestMotion best;
   for (const auto& motion : model.motions) {
     Explained explained = explain(pairs, model.inliers, motion, config);
@@ -149,7 +75,7 @@ BestMotion best_motion(const RayPairs& pairs, const Model& model, const StartCon
 }
 
 // The best motion, refined on what it explains.
-void refine(BestMotion& best, const RayPairs& pairs, const Model& model,
+void refine(BestMotion& best, const RayPairs& pairs, const TwoViewModel& model,
             const StartConfig& config) {
   if (static_cast<int>(best.explained.pairs.size()) < config.min_points) return;
   best.second_from_first =
@@ -207,11 +133,6 @@ std::optional<NoStart> refusal_of(const Start& start, const BestMotion& best,
 
 }  // namespace
 
-std::string_view name_of(StartRefusal refusal) {
-  constexpr std::string_view kNames[] = {"few matches", "low parallax", "ambiguous", "few points"};
-  return kNames[static_cast<int>(refusal)];
-}
-
 Result<Start, NoStart> try_start(const View& first, const View& second,
                                  const StartSettings& settings) {
   core::require(first.rig->is_calibrated() && second.rig->is_calibrated(),
@@ -224,17 +145,14 @@ Result<Start, NoStart> try_start(const View& first, const View& second,
     return refuse(NoStart{StartRefusal::kFewMatches, num_matches,
                           fmt::format("{} matches, expected {}", num_matches, config.min_matches)});
   }
-  const RayPairs pairs = ray_pairs(first, second, matches);
+  const MatchedViews views{first, second, matches};
+  const RayPairs pairs = ray_pairs(views);
   core::Random random(core::seed_of(settings.seed, "start", second.frame.value()));
-  const Model model = choose_model(pairs, config, random);
-  if (model.inliers.empty()) {
-    return refuse(NoStart{StartRefusal::kFewMatches, num_matches,
-                          fmt::format("of {} matches fewer than {} agree with any motion",
-                                      num_matches, config.min_points)});
-  }
-  BestMotion best = best_motion(pairs, model, config);
-  refine(best, pairs, model, config);
-  Start start = make_start(best, matches, model.is_planar, config);
+  const auto model = estimate_model(views, pairs, config, random);
+  if (!model) return refuse(model.error());
+  BestMotion best = best_motion(pairs, *model, config);
+  refine(best, pairs, *model, config);
+  Start start = make_start(best, matches, model->is_planar, config);
   if (auto reason = refusal_of(start, best, config)) {
     reason->num_matches = num_matches;
     return refuse(*std::move(reason));

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <samewhere/core/result.hpp>
@@ -11,6 +9,7 @@
 #include <samewhere/features/features.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/track/config.hpp>
+#include <samewhere/track/two_view_model.hpp>
 
 namespace samewhere::track {
 
@@ -24,29 +23,17 @@ struct Start {
   bool is_planar = false;                        // found by a homography
 };
 
-// Why two views do not start a map, in the order of the checks.
-enum class StartRefusal { kFewMatches, kLowParallax, kAmbiguous, kFewPoints };
-
-std::string_view name_of(StartRefusal refusal);
-
-struct NoStart {
-  StartRefusal refusal = StartRefusal::kFewMatches;
-  int num_matches = 0;
-  std::string reason;  // one sentence with the figure and the threshold
-};
-
 struct StartSettings {
   StartConfig start;
   features::Config features;
   std::uint64_t seed = 0;
 };
 
-// The motion between two views without depth. Homography and essential matrix are both estimated
-// and scored by their symmetric transfer errors; of S_H / (S_H + S_E) above `min_homography_ratio`
-// the scene is flat or hardly moved against, and the motion comes from the homography (Mur-Artal,
-// Montiel and Tardos, "ORB-SLAM", T-RO 2015, section IV). Refused: a motion without parallax (a
-// rotation says nothing of depth), a motion that a second one explains nearly as well, too few
-// matches or points. Both views are calibrated, else ContractError.
+// The motion between two views without depth: of the motions behind their model
+// (two_view_model.hpp) the one that puts most matches in front of both cameras, refined on these.
+// Refused: views without a model, a motion without parallax (a rotation says nothing of depth), a
+// motion that a second one explains nearly as well, too few matches or points. Both views are
+// calibrated, else ContractError.
 Result<Start, NoStart> try_start(const features::View& first, const features::View& second,
                                  const StartSettings& settings);
 

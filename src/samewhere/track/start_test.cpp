@@ -33,6 +33,8 @@ Result<Start, NoStart> started(const features::TestWorld& world, const Rigid3& f
                    view_without_depth(world, 1, first_from_second), settings);
 }
 
+StartSettings from_fundamental() { return {.start = {.model = StartModel::kFundamental}}; }
+
 Rigid3 sideways(std::uint64_t seed) {
   core::Random random(seed);
   const Eigen::Vector3d turn_rad(random.uniform(-0.05, 0.05), random.uniform(-0.1, 0.1),
@@ -44,8 +46,9 @@ double direction_error_rad(const Rigid3& a, const Rigid3& b) {
   return std::atan2(a.translation.cross(b.translation).norm(), a.translation.dot(b.translation));
 }
 
-void expect_start(const features::TestWorld& world, const Rigid3& truth, std::uint64_t seed) {
-  const auto start = started(world, truth);
+void expect_start(const features::TestWorld& world, const Rigid3& truth, std::uint64_t seed,
+                  const StartSettings& settings = {}) {
+  const auto start = started(world, truth, settings);
   ASSERT_TRUE(start) << "seed " << seed << ": " << start.error().reason;
   EXPECT_LT(core::angle_rad(start->first_from_second.rotation.conjugate() * truth.rotation), 0.01)
       << "seed " << seed;
@@ -130,6 +133,86 @@ TEST(Start, WrongMatchesDoNotBendIt) {
     ASSERT_TRUE(start) << "seed " << seed << ": " << start.error().reason;
     EXPECT_LT(direction_error_rad(start->first_from_second, truth), 0.15) << "seed " << seed;
   }
+}
+
+TEST(StartFromFundamental, OfARoomFindsTheMotion) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    expect_start(features::test_world(seed), sideways(seed), seed, from_fundamental());
+  }
+}
+
+TEST(StartFromFundamental, WrongMatchesDoNotBendIt) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    features::TestWorld world = features::test_world(seed);
+    const Rigid3 truth = sideways(seed);
+    const auto first = view_without_depth(world, 0, {});
+    core::Random random(seed);
+    for (auto& point : world.points) {  // three of ten things have moved
+      if (random.uniform() < 0.3) point += Eigen::Vector3d(random.uniform(-1, 1), 0.3, 0.2);
+    }
+    const auto start = try_start(first, view_without_depth(world, 1, truth), from_fundamental());
+    ASSERT_TRUE(start) << "seed " << seed << ": " << start.error().reason;
+    EXPECT_LT(direction_error_rad(start->first_from_second, truth), 0.15) << "seed " << seed;
+  }
+}
+
+// Seven or more points of a plane fit infinitely many fundamental matrices.
+TEST(StartFromFundamental, AWallIsRefused) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto start = started(wall(seed), sideways(seed), from_fundamental());
+    ASSERT_FALSE(start) << "seed " << seed;
+    EXPECT_EQ(start.error().refusal, StartRefusal::kDegenerate)
+        << "seed " << seed << ": " << start.error().reason;
+  }
+}
+
+// Things before a wall, from nearly none to many: the share of the wall at which F is trusted is
+// for the threshold to say, but a motion that is told is the true one.
+TEST(StartFromFundamental, AWallWithThingsBeforeItNeverTellsAWrongMotion) {
+  int num_started = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    features::TestWorld world = wall(seed);
+    core::Random random(seed);
+    const double things_ratio = 0.01 * static_cast<double>(seed);
+    for (auto& point : world.points) {
+      if (random.uniform() < things_ratio) point *= random.uniform(0.4, 0.9);
+    }
+    const Rigid3 truth = sideways(seed);
+    const auto start = started(world, truth, from_fundamental());
+    if (!start) continue;
+    ++num_started;
+    EXPECT_LT(direction_error_rad(start->first_from_second, truth), 0.2) << "seed " << seed;
+    EXPECT_LT(core::angle_rad(start->first_from_second.rotation.conjugate() * truth.rotation), 0.05)
+        << "seed " << seed;
+  }
+  EXPECT_GT(num_started, 10);
+}
+
+TEST(StartFromFundamental, ARotationIsRefused) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto start =
+        started(features::test_world(seed), {core::exp_so3({0.05, 0.15, 0.03}), {0.0, 0.0, 0.0}},
+                from_fundamental());
+    ASSERT_FALSE(start) << "seed " << seed;
+    EXPECT_EQ(start.error().refusal, StartRefusal::kDegenerate)
+        << "seed " << seed << ": " << start.error().reason;
+  }
+}
+
+TEST(StartFromFundamental, AStepOfAFewMillimetresIsRefused) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    EXPECT_FALSE(started(features::test_world(seed), {core::exp_so3({0, 0.05, 0}), {0.01, 0, 0}},
+                         from_fundamental()))
+        << "seed " << seed;
+  }
+}
+
+TEST(StartFromFundamental, TheSameViewsGiveTheSameBits) {
+  const auto first = started(features::test_world(6), sideways(6), from_fundamental());
+  const auto second = started(features::test_world(6), sideways(6), from_fundamental());
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->points_in_first, second->points_in_first);
+  EXPECT_EQ(first->first_from_second.translation, second->first_from_second.translation);
 }
 
 TEST(Starter, WaitsForParallaxAndThenStartsFromTheFirstView) {
