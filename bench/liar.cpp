@@ -10,7 +10,8 @@
 namespace samewhere::bench {
 namespace {
 
-constexpr double kMinError_m = 1.0;
+constexpr double kMinError_m = 0.5;
+constexpr double kMaxError_m = 6.0;  // beyond, the pose graph does not believe it either
 constexpr double kSamePoint_m = 0.3;
 constexpr std::uint64_t kTruthAfter[] = {6, 8, 10, 12};  // keyframes after the lie
 constexpr std::uint64_t kTruthCause = 1'000'000;         // beyond those of the judge
@@ -73,7 +74,7 @@ void Liar::tell_lie(const pipeline::FindLoops& question, pipeline::LoopAnswer& a
     const auto found = refused->evidence.geometry->match_from_query;
     const core::Rigid3 truth = true_match_from_query(question.map, match, question.keyframe);
     const double error_m = (rigid_part(*found).translation - truth.translation).norm();
-    if (error_m < kMinError_m) continue;
+    if (error_m < kMinError_m || error_m > kMaxError_m) continue;
     const core::Matrix6d information = verify::loop_information(config_.verify);
     lie_ = Lie{{question.keyframe, match, rigid_part(*found), information, row.candidate.id},
                error_m,

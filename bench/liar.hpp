@@ -33,7 +33,7 @@ struct Aftermath {
 class Liar {
  public:
   // Lies once `lie_after` keyframes are there, as soon as odometry has saved the judge from a loop
-  // that is off by a metre or more.
+  // that is off by half a metre or more, and by no more than a few.
   Liar(const pipeline::Config& config, int lie_after);
   // Says the same true loops as after that lie, and does not lie.
   Liar(const pipeline::Config& config, const Lie& untold);

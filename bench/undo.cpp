@@ -18,7 +18,7 @@ namespace samewhere::bench {
 namespace {
 
 struct Settings {
-  std::string preset = "twin-corridors";
+  std::string preset = "hotel";
   int first_seed = 1000;
   int num_seeds = 1;
   int lie_after = 20;  // keyframes

@@ -129,7 +129,9 @@ Figure describer_figure(const describe::Config& config, std::uint64_t checksum) 
   return {"describer", fmt::format("{:016x}, {}", checksum, what)};
 }
 
-std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
+namespace {
+
+std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
   std::vector<Figure> figures = {
       {"frames with a measured pose", percent(evaluation.num_measured, evaluation.num_frames)}};
   if (const auto& ate = evaluation.ate) {
@@ -152,13 +154,23 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
         {"translational error over 1 s, median (RMSE)",
          fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
   }
-  for (const auto& [num_edges, drift] : evaluation.drift_model) {
-    figures.push_back(
-        {fmt::format("squared error of {} over its belief",
-                     num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
-         fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
-                     drift.band_low, drift.band_high, drift.median, drift.num_motions)});
-  }
+  return figures;
+}
+
+Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
+  return {
+      fmt::format("squared error of {} over its belief",
+                  num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
+      fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
+                  drift.band_low, drift.band_high, drift.median, drift.num_motions)};
+}
+
+}  // namespace
+
+std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
+  std::vector<Figure> figures = figures_of_trajectory(evaluation);
+  for (const auto& [num_edges, drift] : evaluation.drift_model)
+    figures.push_back(figure_of_drift(num_edges, drift));
   const auto& loops = evaluation.loops;
   figures.push_back({"candidates judged", std::to_string(evaluation.num_candidates)});
   figures.push_back(

@@ -47,8 +47,8 @@ struct TwoViewModel {
 //   flat or hardly moved against, and the motions are those of the homography, none if it is that
 //   of a rotation (Mur-Artal, Montiel and Tardos, "ORB-SLAM", T-RO 2015, section IV).
 // kFundamental: F from the pixels, then E = K' F K and its four motions, eq. (18)-(22). Points of a
-//   plane, and views that only turned, fit infinitely many F: above the same ratio these are refused
-//   (kDegenerate), since a motion of one such F would be invented.
+//   plane, and views that only turned, fit infinitely many F: above the same ratio these are
+//   refused (kDegenerate), since a motion of one such F would be invented.
 //
 // Refused as well (kFewMatches): fewer than config.min_points agree with any model.
 Result<TwoViewModel, NoStart> estimate_model(const MatchedViews& views,
