@@ -52,6 +52,40 @@ std::string percent(int part, int whole) {
   return fmt::format("{} of {} ({:.1f} %)", part, whole, whole > 0 ? 100.0 * part / whole : 0.0);
 }
 
+std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
+  std::vector<Figure> figures = {
+      {"frames with a measured pose", percent(evaluation.num_measured, evaluation.num_frames)}};
+  if (const auto& ate = evaluation.ate) {
+    figures.push_back(
+        {evaluation.is_scale_free ? "ATE RMSE (median, max), scale aligned"
+                                  : "ATE RMSE (median, max)",
+         fmt::format("{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m)});
+  }
+  if (evaluation.path_m > 0.0) {
+    figures.push_back({"path length", fmt::format("{:.2f} m", evaluation.path_m)});
+  }
+  if (const auto& ate = evaluation.odometry_ate) {
+    figures.push_back({"ATE RMSE before loop closing", fmt::format("{:.4f} m", ate->rmse_m)});
+  }
+  if (const auto& rpe = evaluation.rpe) {
+    figures.push_back(
+        {"rotational error over 1 s, median (RMSE)",
+         fmt::format("{:.2f} degrees ({:.2f})", rpe->rotation_median_deg, rpe->rotation_rmse_deg)});
+    figures.push_back(
+        {"translational error over 1 s, median (RMSE)",
+         fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
+  }
+  return figures;
+}
+
+Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
+  return {
+      fmt::format("squared error of {} over its belief",
+                  num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
+      fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
+                  drift.band_low, drift.band_high, drift.median, drift.num_motions)};
+}
+
 }  // namespace
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
@@ -128,44 +162,6 @@ Figure describer_figure(const describe::Config& config, std::uint64_t checksum) 
                                : std::filesystem::path(config.network).filename().string();
   return {"describer", fmt::format("{:016x}, {}", checksum, what)};
 }
-
-namespace {
-
-std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
-  std::vector<Figure> figures = {
-      {"frames with a measured pose", percent(evaluation.num_measured, evaluation.num_frames)}};
-  if (const auto& ate = evaluation.ate) {
-    figures.push_back(
-        {evaluation.is_scale_free ? "ATE RMSE (median, max), scale aligned"
-                                  : "ATE RMSE (median, max)",
-         fmt::format("{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m)});
-  }
-  if (evaluation.path_m > 0.0) {
-    figures.push_back({"path length", fmt::format("{:.2f} m", evaluation.path_m)});
-  }
-  if (const auto& ate = evaluation.odometry_ate) {
-    figures.push_back({"ATE RMSE before loop closing", fmt::format("{:.4f} m", ate->rmse_m)});
-  }
-  if (const auto& rpe = evaluation.rpe) {
-    figures.push_back(
-        {"rotational error over 1 s, median (RMSE)",
-         fmt::format("{:.2f} degrees ({:.2f})", rpe->rotation_median_deg, rpe->rotation_rmse_deg)});
-    figures.push_back(
-        {"translational error over 1 s, median (RMSE)",
-         fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
-  }
-  return figures;
-}
-
-Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
-  return {
-      fmt::format("squared error of {} over its belief",
-                  num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
-      fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
-                  drift.band_low, drift.band_high, drift.median, drift.num_motions)};
-}
-
-}  // namespace
 
 std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   std::vector<Figure> figures = figures_of_trajectory(evaluation);
