@@ -152,9 +152,22 @@ TEST_F(WithoutDepth, AViewIsKeptWhenItMovedOrLostSightOfSomeLandmarks) {
   EXPECT_TRUE(is_worth_keeping(map_, tracked_at(moved(0.8), 1.0), config_));
 }
 
-TEST_F(WithoutDepth, AMapIsStartedOnce) {
-  EXPECT_THROW(start_map(map_, ViewPair{view_at(0, {}), view_at(1, {}), {}, {}, {}}),
-               core::ContractError);
+TEST_F(WithoutDepth, AMapThatIsGivenUpBeginsAnewBesideItsOldKeyframes) {
+  const scene::MapVersion given_up = apply(map_, give_up(map_));
+  EXPECT_EQ(num_live(given_up.landmarks), 0U);
+  EXPECT_EQ(num_live(given_up.keyframes), 2U);
+  ViewPair pair{view_at(5, {}), view_at(6, second_pose_), second_pose_, {}, {}};
+  pair.matches = {{0, 0, 0}, {1, 1, 0}};
+  pair.points_in_first = {{0.0, 0.0, 2.0}, {0.5, 0.0, 2.0}};
+  const scene::MapVersion anew = apply(given_up, start_map(given_up, pair));
+  ASSERT_EQ(anew.keyframes.size(), 4U);
+  EXPECT_FALSE(anew.keyframes[2].odometry) << "nobody knows where it stands to the old ones";
+  EXPECT_EQ(anew.keyframes[3].odometry->parent, core::KeyframeId(2));
+  EXPECT_EQ(num_live(anew.landmarks), 2U);
+  const scene::Landmark& first = anew.landmarks[given_up.landmarks.size()];
+  EXPECT_EQ(first.anchor, core::KeyframeId(2));
+  EXPECT_EQ(anew.keyframes[2].slots[0], first.id);
+  EXPECT_EQ(anew.keyframes[3].slots[0], first.id);
 }
 
 }  // namespace
