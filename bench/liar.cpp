@@ -47,6 +47,8 @@ Liar::Liar(const pipeline::Config& config, const Lie& untold)
 void Liar::answer(const pipeline::ToLoopClosing& question, pipeline::LoopAnswer& answer) {
   const auto* asked = std::get_if<pipeline::FindLoops>(&question);
   if (asked == nullptr) return;
+  // who believes a lie has the judge, which asks odometry, believe others
+  answer.loops.clear();
   if (lie_) {
     tell_truth(*asked, answer);
   } else if (asked->keyframe.index() >= static_cast<std::uint64_t>(lie_after_)) {

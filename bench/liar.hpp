@@ -28,8 +28,8 @@ struct Aftermath {
   double ate_believed_m = 0.0;  // of the keyframes, before it was withdrawn
 };
 
-// Slips a lie into what loop closing answers, and, so that it can be found out, true loops between
-// the places around it soon after.
+// Says instead of loop closing which loops there are: a lie, and, so that it can be found out, true
+// ones between the places around it soon after. No others.
 class Liar {
  public:
   // Lies once `lie_after` keyframes are there, as soon as odometry has saved the judge from a loop

@@ -22,8 +22,19 @@ struct Settings {
   int first_seed = 1000;
   int num_seeds = 1;
   int lie_after = 20;  // keyframes
+  double doubt = 4.0;
+  int num_frames = 0;  // 0: the whole walk
   std::string csv_file;
 };
+
+// Odometry that is believed less, so that a lie is believed more; the judge asks as much of a loop,
+// in metres, as always.
+void doubt_odometry(pipeline::Config& config, double factor) {
+  track::DriftConfig& drift = config.track.drift;
+  for (double* sigma : {&drift.base_m, &drift.per_metre, &drift.base_rad, &drift.per_radian})
+    *sigma *= factor;
+  config.verify.max_odometry_chi_square /= factor * factor;
+}
 
 // One walk. `liar` hears each question and sees each version of the map.
 double ate_of_walk(const pipeline::Config& config, Liar& liar) {
@@ -46,6 +57,8 @@ std::vector<std::string> row_of(const std::string& source, const Settings& setti
   pipeline::Config config = pipeline::profile("default");
   config.source = source;
   config.threads = false;
+  config.twin.num_frames = settings.num_frames;
+  doubt_odometry(config, settings.doubt);
   Liar liar(config, settings.lie_after);
   const double after_m = ate_of_walk(config, liar);
   const std::optional<Lie> lie = liar.lie();
@@ -90,6 +103,10 @@ std::function<void()> set_up(CLI::App& app) {
   app.add_option("--seeds", settings->num_seeds, "walks")->check(CLI::Range(1, 100));
   app.add_option("--after", settings->lie_after, "keyframes before the lie")
       ->check(CLI::Range(1, 100000));
+  app.add_option("--doubt", settings->doubt, "factor on what odometry says of its errors")
+      ->check(CLI::Range(1.0, 1000.0));
+  app.add_option("--frames", settings->num_frames, "of a walk; 0: all")
+      ->check(CLI::Range(0, 1000000));
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

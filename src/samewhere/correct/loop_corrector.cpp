@@ -81,6 +81,14 @@ std::optional<LoopEdge> between_holders(const MapVersion& map, const LoopEdge& l
       loop.information, loop.cause};
 }
 
+scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
+  optimize::PoseGraph graph = pose_graph_of(map);
+  solve_pose_graph(graph, config);
+  scene::Edit edit;
+  edit.pose_changes = moves_to(map, graph);
+  return edit;
+}
+
 Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::Config& config) {
   core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
   optimize::PoseGraph graph = pose_graph_of(map);
@@ -103,16 +111,11 @@ Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::
     closing.edit.doubted_loops.push_back(bent.loop);
   }
   closing.edit.loops = closing.believed;
-  closing.edit.pose_changes = moves_to(map, graph);
+  // a withdrawn loop takes with it what bundles found while it was there
+  closing.edit.pose_changes = closing.withdrawn.empty()
+                                  ? moves_to(map, graph)
+                                  : solve_poses(apply(map, closing.edit), config).pose_changes;
   return closing;
-}
-
-scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
-  optimize::PoseGraph graph = pose_graph_of(map);
-  solve_pose_graph(graph, config);
-  scene::Edit edit;
-  edit.pose_changes = moves_to(map, graph);
-  return edit;
 }
 
 scene::Edit withdraw_loop(const MapVersion& map, core::CandidateId cause,

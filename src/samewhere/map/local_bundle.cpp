@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/map/local_bundle.hpp>
@@ -142,11 +143,15 @@ scene::Edit moved_keyframes(const MapVersion& map, const Problem& problem,
 }  // namespace
 
 BundleWindow window_around(const MapVersion& map, KeyframeId keyframe, const Config& config) {
-  std::set<KeyframeId> free = free_keyframes(map, keyframe, config);
+  return window_of(map, free_keyframes(map, keyframe, config), config);
+}
+
+BundleWindow window_of(const MapVersion& map, std::set<KeyframeId> free, const Config& config) {
+  core::require(!free.empty(), "a bundle moves a keyframe");
   BundleWindow window;
   window.landmarks = bundled_landmarks(map, free, config.bundle_observations);
   window.fixed = fixed_keyframes(map, free, window.landmarks, config.bundle_fixed_keyframes);
-  const std::size_t num_needed = has_depth(map.at(keyframe).view) ? 1 : 2;
+  const std::size_t num_needed = has_depth(map.at(*free.rbegin()).view) ? 1 : 2;
   while (window.fixed.size() < num_needed && free.size() > 1) {
     window.fixed.push_back(*free.begin());
     free.erase(free.begin());
@@ -158,7 +163,11 @@ BundleWindow window_around(const MapVersion& map, KeyframeId keyframe, const Con
 
 scene::Edit bundle_around(const MapVersion& map, KeyframeId keyframe,
                           const BundleSettings& settings) {
-  const BundleWindow window = window_around(map, keyframe, settings.map);
+  return bundle(map, window_around(map, keyframe, settings.map), settings);
+}
+
+scene::Edit bundle(const MapVersion& map, const BundleWindow& window,
+                   const BundleSettings& settings) {
   if (window.fixed.empty()) return {};
   const Problem problem = problem_of(map, window, settings.features);
   const optimize::BundleResult result = solve_bundle(problem.bundle, settings.optimize);

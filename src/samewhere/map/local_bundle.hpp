@@ -1,5 +1,8 @@
 #pragma once
 
+#include <set>
+#include <vector>
+
 #include <samewhere/features/config.hpp>
 #include <samewhere/map/config.hpp>
 #include <samewhere/optimize/bundle.hpp>
@@ -22,6 +25,10 @@ struct BundleWindow {
 BundleWindow window_around(const scene::MapVersion& map, core::KeyframeId keyframe,
                            const Config& config);
 
+// The same around keyframes of one's own choice, at least one, all of which are free.
+BundleWindow window_of(const scene::MapVersion& map, std::set<core::KeyframeId> free,
+                       const Config& config);
+
 struct BundleSettings {
   Config map;
   features::Config features;
@@ -34,5 +41,9 @@ struct BundleSettings {
 // edit's refinements.
 scene::Edit bundle_around(const scene::MapVersion& map, core::KeyframeId keyframe,
                           const BundleSettings& settings);
+
+// The same for a window of one's own.
+scene::Edit bundle(const scene::MapVersion& map, const BundleWindow& window,
+                   const BundleSettings& settings);
 
 }  // namespace samewhere::map

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -22,11 +23,31 @@ bool fits(const MapVersion& map, const Landmark& landmark, const Observation& o,
   return is_inlier(reproject(keyframe.view, o.slot, in_camera, config));
 }
 
+bool has_loop(const MapVersion& map, core::CandidateId cause) {
+  return std::any_of(map.loops.begin(), map.loops.end(),
+                     [&](const scene::LoopEdge& loop) { return loop.cause == cause; });
+}
+
+// As far off as another place, not as poses that are to be bundled yet: three times the limit of
+// an inlier, in pixels.
+bool is_elsewhere(const MapVersion& map, const Landmark& landmark, const Observation& o,
+                  const features::Config& config) {
+  constexpr double kFactor = 9.0;  // of the squared error
+  const scene::Keyframe& keyframe = map.at(o.keyframe);
+  const auto r =
+      reproject(keyframe.view, o.slot,
+                camera_from_world(map, keyframe) * position_in_world(map, landmark), config);
+  return r.size == 0 || r.value.squaredNorm() > kFactor * optimize::kChiSquare95[r.size];
+}
+
 // A map before places were parted, and what of it holds after.
 class Parting {
  public:
   Parting(const MapVersion& before, MapVersion after, const features::Config& config)
-      : before_(before), map_(std::move(after)), config_(config) {}
+      : before_(before), map_(std::move(after)), config_(config) {
+    for (const auto& loop : before_.loops)
+      if (!has_loop(map_, loop.cause)) joined_at_ = std::min(joined_at_, loop.closed_at);
+  }
 
   std::vector<scene::Edit> edits() && {
     unmerge();
@@ -46,25 +67,25 @@ class Parting {
 
   // It fitted what the landmark was part of, and does not fit the landmark now.
   bool is_misfit(const Landmark& shown, const Landmark& landmark, const Observation& o) const {
-    return fits(before_, shown, o, config_) && !fits(map_, landmark, o, config_);
+    return fits(before_, shown, o, config_) && is_elsewhere(map_, landmark, o, config_);
   }
 
   bool is_wrong(const scene::Merge& made) const {
     const Landmark& survivor = survivor_of(map_, made.from);
-    const Landmark& shown = shown_before(made.from);
-    int num_fitting = 0;
-    int num_misfits = 0;
+    int num_near = 0;
+    int num_elsewhere = 0;
     for (const auto& o : map_.at(made.from).observations) {
-      if (!is_live(map_.at(o.keyframe)) || !fits(before_, shown, o, config_)) continue;
-      (fits(map_, survivor, o, config_) ? num_fitting : num_misfits) += 1;
+      if (is_live(map_.at(o.keyframe)))
+        (is_elsewhere(map_, survivor, o, config_) ? num_elsewhere : num_near) += 1;
     }
-    return num_misfits > num_fitting;
+    return num_elsewhere > num_near;
   }
 
   void unmerge() {
     scene::Edit edit;
     for (std::size_t i = 0; i < map_.merges.size(); ++i)
-      if (is_wrong(map_.merges[i])) edit.unmerged_landmarks.push_back(map_.merges[i].from);
+      if (map_.merges[i].made_at >= joined_at_ && is_wrong(map_.merges[i]))
+        edit.unmerged_landmarks.push_back(map_.merges[i].from);
     take(std::move(edit));
   }
 
@@ -134,11 +155,19 @@ class Parting {
     return Eigen::Vector3d(sum / weight);
   }
 
-  void place_anew() {
+  std::set<LandmarkId> touched_landmarks() const {
     std::set<LandmarkId> touched;
-    for (const auto& [landmark, o] : removed_) touched.insert(landmark);
+    for (const auto& [landmark, o] : removed_) {
+      touched.insert(landmark);
+      for (const auto& id : map_.at(o.keyframe).slots)
+        if (id.is_valid()) touched.insert(id);
+    }
+    return touched;
+  }
+
+  void place_anew() {
     scene::Edit edit;
-    for (const LandmarkId id : touched) {
+    for (const LandmarkId id : touched_landmarks()) {
       const Landmark& landmark = map_.at(id);
       if (!is_live(landmark)) continue;
       if (is_unsupported(landmark)) {
@@ -153,6 +182,8 @@ class Parting {
   const MapVersion& before_;
   MapVersion map_;
   const features::Config& config_;
+  // the number of the map in which the first of the loops was closed that are gone
+  std::uint64_t joined_at_ = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::pair<LandmarkId, Observation>> removed_;
   std::vector<scene::Edit> edits_;
 };

@@ -10,12 +10,14 @@ namespace samewhere::map {
 
 // Two places that a loop had made one were parted: `before` is the map with the loop, `after` the
 // one without it, its poses solved anew. The edits, to be applied to `after` in order, that take
-// out what fitted before and does not fit any more (chi-square at 95 %):
+// out what is far off now (three times the limit of an inlier, in pixels):
 // - merges that mapping made while the loop was there, if most of the observations that came with
-//   them do not fit;
-// - sightings; one that fits another of the landmarks that were one until now is handed to it;
+//   them are;
+// - sightings that fitted before (chi-square at 95 %); one that fits another of the landmarks that
+//   were one until now is handed to it;
 // - landmarks of which one observation without depth is left.
-// Landmarks that lost observations stand where the depths of the others say, until a bundle comes.
+// Landmarks of keyframes that lost sightings stand where the depths of all theirs say, until a
+// bundle comes.
 std::vector<scene::Edit> part_places(const scene::MapVersion& before,
                                      const scene::MapVersion& after,
                                      const features::Config& features);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -11,26 +12,34 @@ namespace {
 
 using scene::MapVersion;
 
-std::set<core::KeyframeId> keyframes_that_show_something_else(const MapVersion& before,
-                                                              const MapVersion& after) {
+// They show something else, or lost what a bundle had found.
+std::set<core::KeyframeId> changed_keyframes(const MapVersion& before, const MapVersion& after) {
   std::set<core::KeyframeId> changed;
   for (std::size_t i = 0; i < before.keyframes.size(); ++i) {
-    const scene::Keyframe& keyframe = after.keyframes[i];
-    if (is_live(keyframe) && keyframe.slots != before.keyframes[i].slots)
-      changed.insert(keyframe.id);
+    const scene::Keyframe& was = before.keyframes[i];
+    const scene::Keyframe& is = after.keyframes[i];
+    const bool was_refined = was.refined_parent_from_keyframe.has_value();
+    const bool is_refined = is.refined_parent_from_keyframe.has_value();
+    if (is_live(is) && (is.slots != was.slots || was_refined != is_refined)) changed.insert(is.id);
   }
   return changed;
 }
 
-// Each in one bundle, as a free one.
-MapVersion bundled(MapVersion map, std::set<core::KeyframeId> keyframes, const Config& config) {
-  while (!keyframes.empty()) {
-    const core::KeyframeId keyframe = *keyframes.begin();
-    keyframes.erase(keyframe);
-    for (const auto& free : map::window_around(map, keyframe, config.map).free)
-      keyframes.erase(free);
-    const auto edit =
-        map::bundle_around(map, keyframe, {config.map, config.features, config.optimize});
+constexpr std::size_t kMaxTogether = 60;  // more make a bundle slow
+
+// Together, or what holds one of them would be as far off as it is itself. Where that is too many,
+// the oldest first: who is younger is held by them.
+MapVersion bundled(MapVersion map, const std::set<core::KeyframeId>& keyframes,
+                   const Config& config) {
+  map::BundleSettings settings{config.map, config.features, config.optimize};
+  for (auto next = keyframes.begin(); next != keyframes.end();) {
+    std::set<core::KeyframeId> together;
+    while (next != keyframes.end() && together.size() < kMaxTogether) together.insert(*next++);
+    const int num_windows =
+        1 + static_cast<int>(together.size()) / std::max(1, config.map.bundle_keyframes);
+    settings.map.bundle_observations = num_windows * config.map.bundle_observations;
+    const scene::Edit edit =
+        map::bundle(map, map::window_of(map, together, settings.map), settings);
     map = apply(std::move(map), edit);
   }
   return map;
@@ -41,7 +50,7 @@ MapVersion bundled(MapVersion map, std::set<core::KeyframeId> keyframes, const C
 MapVersion with_places_parted(const MapVersion& before, MapVersion after, const Config& config) {
   for (const auto& edit : map::part_places(before, after, config.features))
     after = apply(std::move(after), edit);
-  after = bundled(after, keyframes_that_show_something_else(before, after), config);
+  after = bundled(after, changed_keyframes(before, after), config);
   const scene::Edit poses = correct::solve_poses(after, config.optimize);
   return apply(std::move(after), poses);
 }

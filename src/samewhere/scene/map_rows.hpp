@@ -49,7 +49,8 @@ void fields(Archive& archive, Value<Archive, OdometryEdge>& edge) {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, Keyframe>& keyframe) {
   archive(keyframe.id, keyframe.world_from_body, keyframe.odometry,
-          keyframe.refined_parent_from_keyframe, keyframe.culled_parent_from_keyframe);
+          keyframe.refined_parent_from_keyframe, keyframe.refined_at,
+          keyframe.culled_parent_from_keyframe);
 }
 
 template <class Archive>
@@ -66,12 +67,13 @@ void fields(Archive& archive, Value<Archive, Landmark>& landmark) {
 
 template <class Archive>
 void fields(Archive& archive, Value<Archive, LoopEdge>& loop) {
-  archive(loop.query, loop.match, loop.match_from_query, loop.information, loop.cause);
+  archive(loop.query, loop.match, loop.match_from_query, loop.information, loop.cause,
+          loop.closed_at);
 }
 
 template <class Archive>
 void fields(Archive& archive, Value<Archive, Merge>& merge) {
-  archive(merge.from, merge.to, merge.cause);
+  archive(merge.from, merge.to, merge.cause, merge.made_at);
 }
 
 template <class Archive>

@@ -62,7 +62,7 @@ void merge(MapVersion& map, const Merge& merge) {
     if (!is_seen_itself) to.observations.push_back(observation);
   }
   from.merged_into = to.id;
-  map.merges.push_back(merge);
+  map.merges.push_back({merge.from, merge.to, merge.cause, map.number});
 }
 
 void cull(MapVersion& map, core::LandmarkId id) {
@@ -83,6 +83,7 @@ void skip_parent(const MapVersion& map, Keyframe& child) {
   const auto joined = compose(edge_of(*parent.odometry), edge_of(*child.odometry));
   if (parent.refined_parent_from_keyframe || child.refined_parent_from_keyframe)
     child.refined_parent_from_keyframe = parent_from_keyframe(parent) * parent_from_keyframe(child);
+  child.refined_at = std::max(parent.refined_at, child.refined_at);
   child.odometry = {parent.odometry->parent, joined.a_from_b, joined.covariance.inverse()};
 }
 
@@ -114,6 +115,7 @@ void move(MapVersion& map, const Edit& edit) {
   for (const auto& refinement : edit.refinements) {
     Keyframe& keyframe = map.keyframes.edit(refinement.keyframe.index());
     keyframe.refined_parent_from_keyframe = refinement.parent_from_keyframe;
+    keyframe.refined_at = map.number;
   }
   for (const auto& change : edit.landmark_changes)
     map.landmarks.edit(change.landmark.index()).position_in_anchor = change.position_in_anchor;
@@ -144,6 +146,7 @@ MapVersion apply(MapVersion map, const Edit& edit) {
   for (const auto& loop : edit.loops) {
     std::erase_if(map.doubted_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
     map.loops.push_back(loop);
+    map.loops.back().closed_at = map.number;
   }
   ++map.number;
   return map;

@@ -60,6 +60,7 @@ struct Keyframe {
   // Where a bundle that saw both found it relative to its odometry parent: better than odometry,
   // and as free of loops.
   std::optional<core::Rigid3> refined_parent_from_keyframe;
+  std::uint64_t refined_at = 0;  // MapVersion::number then
   // Set: culled. It shows no landmark any more; its pose hangs on its odometry parent.
   std::optional<core::Rigid3> culled_parent_from_keyframe;
 };
@@ -73,6 +74,7 @@ struct LoopEdge {
   core::Rigid3 match_from_query;
   core::Matrix6d information = core::Matrix6d::Identity();
   core::CandidateId cause;
+  std::uint64_t closed_at = 0;  // MapVersion::number then; set by apply()
 };
 
 // How many keyframes or landmarks are part of the map today.
@@ -88,7 +90,8 @@ std::size_t num_live(const ChunkedVector<Row>& rows) {
 struct Merge {
   core::LandmarkId from;
   core::LandmarkId to;
-  core::CandidateId cause;  // the loop that brought them together; invalid: mapping alone
+  core::CandidateId cause;    // the loop that brought them together; invalid: mapping alone
+  std::uint64_t made_at = 0;  // MapVersion::number then; set by apply()
 };
 
 // The map at one moment. Ids are positions: keyframe k is keyframes[k].

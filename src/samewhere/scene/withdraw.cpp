@@ -19,6 +19,17 @@ void remove_edges(MapVersion& map, const Causes& causes) {
   }
 }
 
+void forget_refinements(MapVersion& map, const Causes& causes) {
+  for (const auto& loop : map.loops) {
+    if (!causes.contains(loop.cause)) continue;
+    for (std::size_t i = 0; i <= std::max(loop.query, loop.match).index(); ++i) {
+      const Keyframe& keyframe = map.keyframes[i];
+      if (keyframe.refined_parent_from_keyframe && keyframe.refined_at >= loop.closed_at)
+        map.keyframes.edit(i).refined_parent_from_keyframe.reset();
+    }
+  }
+}
+
 // Slots of live landmarks go with their observations; merged and culled ones have none.
 void remove_observations(MapVersion& map, const Causes& causes, std::size_t landmark_index) {
   const auto is_caused = [&](const Observation& o) { return causes.contains(o.cause); };
@@ -109,6 +120,7 @@ void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
   for (const auto& id : unmerged)
     core::require(map.at(id).merged_into.is_valid(), "a landmark that is unmerged was merged");
   const Causes causes(loops.begin(), loops.end());
+  forget_refinements(map, causes);
   remove_edges(map, causes);
   if (!causes.empty())
     for (std::size_t i = 0; i < map.landmarks.size(); ++i) remove_observations(map, causes, i);

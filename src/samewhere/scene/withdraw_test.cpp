@@ -273,6 +273,29 @@ TEST_F(Withdrawing, ADoubtedLoopHoldsNothingUntilItIsBelieved) {
   EXPECT_EQ(believed.doubted_loops.size(), map_.doubted_loops.size());
 }
 
+TEST_F(Withdrawing, WhatBundlesFoundOfWhatIsOlderThanTheLoopSinceThenIsForgotten) {
+  begin(7);
+  const std::uint64_t newest = map_.keyframes.back().id.index();
+  ASSERT_GE(newest, 3U);
+  const auto refine = [&](std::uint64_t keyframe) {
+    Edit edit;
+    edit.refinements = {{core::KeyframeId(keyframe), random_pose(random_)}};
+    map_ = apply(std::move(map_), edit);
+  };
+  refine(newest - 1);
+  refine(newest);
+  Edit edge;
+  edge.loops = {lie_};
+  map_ = apply(std::move(map_), edge);
+  refine(newest);
+  add_rich_keyframe(7);
+  refine(newest + 1);
+  const MapVersion after = without_lie();
+  EXPECT_TRUE(after.keyframes[newest - 1].refined_parent_from_keyframe) << "found before";
+  EXPECT_FALSE(after.keyframes[newest].refined_parent_from_keyframe) << "found across the loop";
+  EXPECT_TRUE(after.keyframes[newest + 1].refined_parent_from_keyframe) << "younger than the loop";
+}
+
 TEST_F(Withdrawing, ACauseOfNoLoopAndALandmarkThatIsNotMergedAreBrokenPromises) {
   begin(6);
   Edit edit;
