@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -10,21 +11,28 @@
 #include <opencv2/core/mat.hpp>
 
 #include <samewhere/core/frame.hpp>
+#include <samewhere/core/paged_memory.hpp>
 
 namespace samewhere::features {
 
+// An array in ordinary memory or in memory that can be left (paged.hpp).
+template <class T>
+using Array = std::pmr::vector<T>;
+
 // The features of one picture, as arrays of equal length.
 struct Features {
-  std::vector<Eigen::Vector2f> raw_px;  // where they are in the picture
-  std::vector<Eigen::Vector2f>
-      undistorted_px;  // where an ideal pinhole would see them; equal to raw_px if uncalibrated
-  std::vector<float> depth_m;     // along the optical axis, 0 = unknown
-  std::vector<float> right_x_px;  // x in the right picture of a rectified pair, real or virtual
-                                  // (baseline_m of stereo.hpp), NaN = unknown
-  std::vector<int> octave;        // pyramid level, 0 = full size
-  std::vector<float> angle_rad;   // orientation of the patch
-  std::vector<std::array<std::uint8_t, 3>> rgb;  // colour of the pixel
-  cv::Mat descriptors;                           // size() x 32 bytes
+  Array<Eigen::Vector2f> raw_px;  // where they are in the picture
+  Array<Eigen::Vector2f>
+      undistorted_px;    // where an ideal pinhole would see them; equal to raw_px if uncalibrated
+  Array<float> depth_m;  // along the optical axis, 0 = unknown
+  Array<float> right_x_px;  // x in the right picture of a rectified pair, real or virtual
+                            // (baseline_m of stereo.hpp), NaN = unknown
+  Array<int> octave;        // pyramid level, 0 = full size
+  Array<float> angle_rad;   // orientation of the patch
+  Array<std::array<std::uint8_t, 3>> rgb;  // colour of the pixel
+  cv::Mat descriptors;                     // size() x 32 bytes
+
+  std::shared_ptr<const core::PagedBlock> pages;  // in which they lie, if they are paged
 
   int size() const { return static_cast<int>(raw_px.size()); }
 };

@@ -150,8 +150,8 @@ double baseline_m(const core::Rig& rig, const Config& config) {
   return (inverse(rig.body_from_camera[0]) * rig.body_from_camera[1]).translation.norm();
 }
 
-std::vector<float> match_stereo(const Side& left, const Side& right, const core::Rig& rig,
-                                const Config& config) {
+Array<float> match_stereo(const Side& left, const Side& right, const core::Rig& rig,
+                          const Config& config) {
   const auto max_disparity_px =
       static_cast<float>(geometry::pinhole(rig.cameras[0]).fx_px / kMinDepth_baselines);
   const auto num_left = left.features.raw_px.size();
@@ -168,7 +168,7 @@ std::vector<float> match_stereo(const Side& left, const Side& right, const core:
     }
   }
   remove_outliers(found);
-  std::vector<float> right_x_px;
+  Array<float> right_x_px;
   right_x_px.reserve(num_left);
   for (const auto& one : found) right_x_px.push_back(one.right_x_px);
   return right_x_px;

@@ -31,7 +31,7 @@ struct Side {
 // are compared at steps of a pixel of the level and a parabola placed through the differences.
 // Matches whose surroundings differ by far more than the median pair's are taken out (Mur-Artal and
 // Tardos 2017).
-std::vector<float> match_stereo(const Side& left, const Side& right, const core::Rig& rig,
-                                const Config& config);
+Array<float> match_stereo(const Side& left, const Side& right, const core::Rig& rig,
+                          const Config& config);
 
 }  // namespace samewhere::features

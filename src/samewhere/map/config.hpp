@@ -17,14 +17,15 @@ struct Config {
   int search_keyframes = 8;
   double min_parallax_rad = 0.018;
   double fuse_radius_px = 3.0;
-  int bundle_keyframes = 8;
-  int bundle_fixed_keyframes = 16;
+  int bundle_keyframes = 20;
+  int bundle_fixed_keyframes = 24;
   int bundle_observations = 8000;
   int cull_after_keyframes = 3;
   double min_found_ratio = 0.25;
   double redundant_ratio = 0.9;
   int visible_after_frames = 2;
   int loop_lag_keyframes = 1;
+  int keyframes_in_memory = 200;
 };
 
 // Which views are kept.
@@ -118,6 +119,11 @@ inline void visit_schedule_fields(Config& config, core::FieldVisitor& visit) {
                  "added",
          .min = 1,
          .max = 100});
+  visit(
+      "keyframes_in_memory", config.keyframes_in_memory,
+      {.help = "the features of older ones lie in a file without a name and come back when needed",
+       .min = 1,
+       .max = 1000000});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/correct/loop_corrector.hpp>
+#include <samewhere/features/paged.hpp>
 #include <samewhere/map/cull.hpp>
 #include <samewhere/map/fuse.hpp>
 #include <samewhere/map/local_bundle.hpp>
@@ -52,6 +53,7 @@ void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) 
   ask_for_loops(message.image);
   add_frames(message.frames);
   keep_map();
+  let_old_features_go();
 }
 
 void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
@@ -179,6 +181,21 @@ void Mapping::keep_map() {
   keep_map_(map_, news);
 }
 
-void Mapping::apply(const scene::Edit& edit) { map_ = scene::apply(std::move(map_), edit); }
+void Mapping::apply(scene::Edit edit) {
+  for (auto& keyframe : edit.keyframes)
+    keyframe.view.features = features::paged(keyframe.view.features, feature_memory_);
+  map_ = scene::apply(std::move(map_), edit);
+}
+
+// What fusing, bundles and the judge of loops have looked at since comes back, and goes again at
+// the next round.
+void Mapping::let_old_features_go() const {
+  const auto num_kept = static_cast<std::size_t>(config_.map.keyframes_in_memory);
+  const std::size_t num_keyframes = map_.keyframes.size();
+  if (num_keyframes <= num_kept) return;
+  const std::size_t num_old = num_keyframes - num_kept;
+  for (std::size_t i = num_keyframes % num_kept == 0 ? 0 : num_old - 1; i < num_old; ++i)
+    features::leave_memory(*map_.keyframes[i].view.features);
+}
 
 }  // namespace samewhere::pipeline

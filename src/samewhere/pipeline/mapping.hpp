@@ -50,13 +50,15 @@ class Mapping {
 
   void add_frames(const std::vector<core::FramePose>& frames);
   void keep_map();
-  void apply(const scene::Edit& edit);
+  void apply(scene::Edit edit);
+  void let_old_features_go() const;
 
   Config config_;
   core::Timings timings_;
   LoopLink& loops_;
   KeepMap keep_map_;
   scene::MapVersion map_;
+  core::PagedMemory feature_memory_;
   int num_unheard_ = 0;  // questions to loop closing whose answers are to come
   MapNews news_;         // since the map was kept
   std::map<core::CandidateId, core::LedgerRow> accepted_;  // by the judge, in this session

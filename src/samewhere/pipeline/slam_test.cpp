@@ -46,6 +46,16 @@ TEST(Slam, AFrameThatBecameAKeyframeStaysWhereItsKeyframeIsMoved) {
   EXPECT_GT(num_compared, 5);
 }
 
+void expect_same_bits(const Slam& first, const Slam& second) {
+  const core::Trajectory a = trajectory_of(first.map(), first.frames());
+  const core::Trajectory b = trajectory_of(second.map(), second.frames());
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].world_from_camera.matrix(), b[i].world_from_camera.matrix()) << "frame " << i;
+  }
+  EXPECT_EQ(first.ledger().size(), second.ledger().size());
+}
+
 TEST(Slam, InThreadsAndInTurnTheSameWalkGivesTheSameBits) {
   Config in_turn = short_walk();
   in_turn.threads = false;
@@ -54,13 +64,21 @@ TEST(Slam, InThreadsAndInTurnTheSameWalkGivesTheSameBits) {
   walk(first, short_walk());
   walk(second, in_turn);
   ASSERT_FALSE(first.map().loops.empty());
-  const core::Trajectory a = trajectory_of(first.map(), first.frames());
-  const core::Trajectory b = trajectory_of(second.map(), second.frames());
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].world_from_camera.matrix(), b[i].world_from_camera.matrix()) << "frame " << i;
-  }
-  EXPECT_EQ(first.ledger().size(), second.ledger().size());
+  expect_same_bits(first, second);
+}
+
+TEST(Slam, FeaturesThatLeftMemoryAreTheSameWhenTheyComeBack) {
+  Config forgetful = short_walk();
+  forgetful.map.keyframes_in_memory = 1;
+  Slam first(short_walk());
+  Slam second(forgetful);
+  walk(first, short_walk());
+  walk(second, forgetful);
+  ASSERT_FALSE(second.map().loops.empty()) << "old keyframes are looked at again";
+  const auto& oldest = second.map().keyframes[0].view.features;
+  EXPECT_NE(oldest->pages, nullptr);
+  EXPECT_NE(oldest, first.map().keyframes[0].view.features);
+  expect_same_bits(first, second);
 }
 
 TEST(Slam, WithLoopsOffThereIsOdometryAlone) {

@@ -56,8 +56,8 @@ class ByteWriter {
   void put(const std::array<T, N>& values) {
     row(values.data(), N);
   }
-  template <class T>
-  void put(const std::vector<T>& values) {
+  template <class T, class Memory>
+  void put(const std::vector<T, Memory>& values) {
     put(std::uint64_t{values.size()});
     row(values.data(), values.size());
   }
@@ -141,8 +141,8 @@ class ByteReader {
   void get(std::array<T, N>& values) {
     row(values.data(), N);
   }
-  template <class T>
-  void get(std::vector<T>& values) {
+  template <class T, class Memory>
+  void get(std::vector<T, Memory>& values) {
     std::uint64_t count = 0;
     get(count);
     values.resize(checked_count(count));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/features/paged.hpp>
 #include <samewhere/scene/map_check.hpp>
 #include <samewhere/scene/map_file.hpp>
 #include <samewhere/scene/map_rows.hpp>
@@ -91,7 +92,7 @@ class MapFile::Content {
  private:
   State read_state();
   void read_rigs();
-  features::View read_view(std::string_view bytes, const std::string& row) const;
+  features::View read_view(std::string_view bytes, const std::string& row);
   void read_keyframes(MapVersion& map);
   void read_extras(MapExtras& extras);
 
@@ -113,6 +114,7 @@ class MapFile::Content {
   State state_;
   MapVersion map_;
   std::vector<std::shared_ptr<const core::Rig>> rigs_;
+  core::PagedMemory feature_memory_;
 };
 
 void MapFile::Content::write_header(const MapHeader& header) {
@@ -156,7 +158,7 @@ void MapFile::Content::read_loops(const char* table, std::uint64_t count,
   });
 }
 
-features::View MapFile::Content::read_view(std::string_view bytes, const std::string& row) const {
+features::View MapFile::Content::read_view(std::string_view bytes, const std::string& row) {
   features::View view;
   std::uint64_t rig = 0;
   auto features = std::make_shared<features::Features>();
@@ -166,7 +168,8 @@ features::View MapFile::Content::read_view(std::string_view bytes, const std::st
   reader.finish();
   if (rig >= rigs_.size()) throw core::InputError(row + " is damaged: its rig is not there");
   view.rig = rigs_[rig];
-  view.features = std::move(features);
+  view.features = features::paged(std::move(features), feature_memory_);
+  leave_memory(*view.features);
   return view;
 }
 
