@@ -17,8 +17,9 @@ struct Config {
   int search_keyframes = 8;
   double min_parallax_rad = 0.018;
   double fuse_radius_px = 3.0;
-  int bundle_keyframes = 20;
-  int bundle_fixed_keyframes = 24;
+  int bundle_keyframes = 8;
+  int bundle_keyframes_without_depth = 20;
+  int bundle_fixed_keyframes = 16;
   int bundle_observations = 8000;
   int cull_after_keyframes = 3;
   double min_found_ratio = 0.25;
@@ -86,6 +87,12 @@ inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "keyframes that a local bundle moves; 1 moves only the new one",
          .min = 1,
          .max = 100});
+  visit(
+      "bundle_keyframes_without_depth", config.bundle_keyframes_without_depth,
+      {.help = "bundle_keyframes of a map whose depths come from motion: a short window loses the "
+               "scale",
+       .min = 1,
+       .max = 100});
   visit("bundle_fixed_keyframes", config.bundle_fixed_keyframes,
         {.help = "keyframes beside them that hold a local bundle in place", .min = 1, .max = 200});
   visit("bundle_observations", config.bundle_observations,

@@ -15,11 +15,18 @@ using core::KeyframeId;
 using core::LandmarkId;
 using scene::MapVersion;
 
+bool has_depth(const features::View& view) {
+  const auto& depth_m = view.features->depth_m;
+  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
+}
+
 std::set<KeyframeId> free_keyframes(const MapVersion& map, KeyframeId keyframe,
                                     const Config& config) {
+  const int max_free = has_depth(map.at(keyframe).view) ? config.bundle_keyframes
+                                                        : config.bundle_keyframes_without_depth;
   std::set<KeyframeId> free = {keyframe};
   for (const auto& covisible : covisible_keyframes(map, keyframe)) {
-    if (static_cast<int>(free.size()) >= config.bundle_keyframes) break;
+    if (static_cast<int>(free.size()) >= max_free) break;
     if (covisible.num_shared >= config.min_shared) free.insert(covisible.keyframe);
   }
   return free;
@@ -70,11 +77,6 @@ std::vector<KeyframeId> fixed_keyframes(const MapVersion& map, const std::set<Ke
   }
   std::sort(fixed.begin(), fixed.end());
   return fixed;
-}
-
-bool has_depth(const features::View& view) {
-  const auto& depth_m = view.features->depth_m;
-  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
 }
 
 // The problem and what its positions stand for.

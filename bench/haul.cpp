@@ -1,0 +1,170 @@
+// haul: do time and memory stay what they are when a walk goes on and on?
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "program.hpp"
+#include <samewhere/core/progress.hpp>
+#include <samewhere/core/timing.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/slam.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+struct Settings {
+  std::string source = "twin:long-haul?seed=1000";
+  int num_frames = 0;  // 0: all
+  int num_parts = 9;
+  int keyframes_in_memory = pipeline::Config{}.map.keyframes_in_memory;
+  bool close_loops = true;
+  std::string csv_file;
+};
+
+struct Memory {
+  double own_mib = 0.0;
+  double mapped_mib = 0.0;
+};
+
+// Of this process now (proc(5)).
+Memory memory_now() {
+  std::ifstream status("/proc/self/status");
+  Memory memory;
+  std::string name;
+  for (double kib = 0.0; status >> name;) {
+    if (name == "RssAnon:" && status >> kib) memory.own_mib = kib / 1024.0;
+    if (name == "RssFile:" && status >> kib) memory.mapped_mib = kib / 1024.0;
+    status.ignore(1000, '\n');
+  }
+  return memory;
+}
+
+// What the frames of one part of the walk took.
+struct Part {
+  std::vector<double> wall_ms;
+  std::vector<double> processor_ms;  // of tracking alone
+};
+
+class Haul {
+ public:
+  explicit Haul(const pipeline::Config& config)
+      : source_(pipeline::open_source(config)),
+        slam_(with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
+              hooks()) {}
+
+  // Row by row: a part of the walk.
+  Table run(int num_parts) {
+    const int num_frames = source_->info().num_frames;
+    const int part_size = std::max(1, num_frames / num_parts);
+    core::Progress progress("frames", num_frames);
+    for (int i = 0; const auto frame = source_->next(); ++i) {
+      feed(*frame);
+      progress.update(i + 1);
+      if ((i + 1) % part_size == 0 || i + 1 == num_frames) end_part(i + 1);
+    }
+    progress.finish();
+    slam_.finish();
+    return std::move(table_);
+  }
+
+  // Over all frames, metres.
+  double ate_m() const {
+    const auto error = evaluate::ate(source_->truth().trajectory,
+                                     pipeline::trajectory_of(slam_.map(), slam_.frames()),
+                                     evaluate::Alignment::kSe3);
+    return error ? error->rmse_m : 0.0;
+  }
+
+ private:
+  pipeline::SlamHooks hooks() {
+    pipeline::SlamHooks hooks;
+    hooks.keep_map = [this](const scene::MapVersion& map, const auto&) {
+      num_keyframes_ = map.keyframes.size();
+      num_live_keyframes_ = num_live(map.keyframes);
+      num_live_landmarks_ = num_live(map.landmarks);
+      num_loops_ = map.loops.size();
+    };
+    return hooks;
+  }
+
+  void feed(const core::Frame& frame) {
+    const double before_ms = core::thread_processor_ms();
+    const auto start = std::chrono::steady_clock::now();
+    slam_.feed(frame);
+    const std::chrono::duration<double, std::milli> spent =
+        std::chrono::steady_clock::now() - start;
+    part_.wall_ms.push_back(spent.count());
+    part_.processor_ms.push_back(core::thread_processor_ms() - before_ms);
+  }
+
+  void end_part(int num_fed) {
+    const core::TimingSummary wall = core::summarize(part_.wall_ms);
+    const core::TimingSummary own = core::summarize(part_.processor_ms);
+    const Memory memory = memory_now();
+    table_.rows.push_back({std::to_string(num_fed), std::to_string(num_keyframes_),
+                           std::to_string(num_live_keyframes_), std::to_string(num_live_landmarks_),
+                           std::to_string(num_loops_),
+                           fmt::format("{:.1f} / {:.1f}", own.median_ms, own.p99_ms),
+                           fmt::format("{:.1f} / {:.1f}", wall.median_ms, wall.p99_ms),
+                           fmt::format("{:.0f}", memory.own_mib),
+                           fmt::format("{:.0f}", memory.mapped_mib)});
+    part_ = {};
+  }
+
+  // of the map that mapping kept last, in its thread
+  std::atomic<std::size_t> num_keyframes_ = 0;
+  std::atomic<std::size_t> num_live_keyframes_ = 0;
+  std::atomic<std::size_t> num_live_landmarks_ = 0;
+  std::atomic<std::size_t> num_loops_ = 0;
+  Part part_;
+  Table table_{{"frames", "keyframes", "live", "landmarks", "loops",
+                "tracking, processor ms median / p99", "wall ms median / p99", "memory MiB",
+                "mapped files MiB"},
+               {}};
+  std::unique_ptr<core::Source> source_;
+  pipeline::Slam slam_;
+};
+
+void measure(const Settings& settings) {
+  pipeline::Config config = pipeline::profile("default");
+  config.source = settings.source;
+  config.close_loops = settings.close_loops;
+  config.twin.num_frames = settings.num_frames;
+  config.map.keyframes_in_memory = settings.keyframes_in_memory;
+  Haul haul(config);
+  const Table table = haul.run(settings.num_parts);
+  publish(table, settings.csv_file);
+  fmt::print("ATE RMSE {:.3f} m, peak memory {:.0f} MiB\n", haul.ate_m(), core::peak_memory_mib());
+}
+
+std::function<void()> set_up(CLI::App& app) {
+  const auto settings = std::make_shared<Settings>();
+  app.name("haul");
+  app.description("Time and memory of a long walk, part by part.");
+  app.add_option("--source", settings->source, "with depth");
+  app.add_option("--frames", settings->num_frames, "of a building's walk; 0: all")
+      ->check(CLI::Range(0, 1000000));
+  app.add_option("--parts", settings->num_parts, "of the walk, a row each")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--in-memory", settings->keyframes_in_memory,
+                 "keyframes whose features stay in memory")
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--close-loops", settings->close_loops, "whether loops are looked for");
+  app.add_option("--csv", settings->csv_file, "write the table to this file, too");
+  return [settings] { measure(*settings); };
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
+}
