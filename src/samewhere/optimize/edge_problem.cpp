@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <cmath>
+
 #include <samewhere/core/errors.hpp>
 #include <samewhere/optimize/edge_problem.hpp>
+#include <samewhere/optimize/scaled_edge.hpp>
 
 namespace samewhere::optimize {
 namespace {
@@ -23,6 +27,46 @@ class EdgeCost : public ceres::SizedCostFunction<6, 7, 7> {
  private:
   PoseEdge edge_;
   core::Matrix6d whitening_;
+};
+
+// Between nodes with units of their own.
+class ScaledEdgeCost : public ceres::SizedCostFunction<7, 7, 7, 1, 1> {
+ public:
+  explicit ScaledEdgeCost(const PoseEdge& edge)
+      : edge_(edge),
+        whitening_(whitening(edge.information)),
+        root_(std::sqrt(edge.scale_information)) {}
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const ScaledNode a{from_block(blocks[0]), *blocks[2]};
+    const ScaledNode b{from_block(blocks[1]), *blocks[3]};
+    Eigen::Map<Vector7d> whitened(residuals);
+    whitened = whitened_all(scaled_edge_error(edge_, a, b));
+    if (jacobians == nullptr) return true;
+    const ScaledEdgeJacobians derivatives = scaled_edge_jacobians(edge_, a, b);
+    write_by_tangent<7>(whitened_all(derivatives.by_a), jacobians[0]);
+    write_by_tangent<7>(whitened_all(derivatives.by_b), jacobians[1]);
+    write_column(whitened_all(derivatives.by_scale_of_a), jacobians[2]);
+    write_column(whitened_all(derivatives.by_scale_of_b), jacobians[3]);
+    return true;
+  }
+
+ private:
+  static void write_column(const Vector7d& column, double* out) {
+    if (out != nullptr) std::copy(column.begin(), column.end(), out);
+  }
+  template <int Columns>
+  Eigen::Matrix<double, 7, Columns> whitened_all(
+      const Eigen::Matrix<double, 7, Columns>& rows) const {
+    Eigen::Matrix<double, 7, Columns> out;
+    out.template topRows<6>() = whitening_ * rows.template topRows<6>();
+    out.template bottomRows<1>() = root_ * rows.template bottomRows<1>();
+    return out;
+  }
+
+  PoseEdge edge_;
+  core::Matrix6d whitening_;
+  double root_;
 };
 
 // The edge counts as much as its weight says when it is evaluated.
@@ -141,15 +185,23 @@ EdgeProblem::EdgeProblem(PoseGraph& graph, const Config& config)
     core::require(is_node(edge.a) && is_node(edge.b) && edge.a != edge.b,
                   "an edge joins two nodes of the graph");
   }
+  const std::size_t num_nodes = graph.world_from_node.size();
+  core::require(!has_scales(graph) || (graph.log_scales.size() == num_nodes && !graph.is_planar),
+                "all nodes have a scale or none, and none in the plane");
   for (const auto& pose : graph.world_from_node) blocks_.push_back(to_block(pose));
+  log_scales_ = graph.log_scales;
   for (auto& block : blocks_) {
     ceres::Manifold* const manifold = graph.is_planar
                                           ? static_cast<ceres::Manifold*>(new PlanarManifold)
                                           : static_cast<ceres::Manifold*>(new PoseManifold);
     problem_.AddParameterBlock(block.data(), 7, manifold);
   }
-  for (const int node : held_nodes(graph))
-    problem_.SetParameterBlockConstant(blocks_.at(static_cast<std::size_t>(node)).data());
+  for (double& log_scale : log_scales_) problem_.AddParameterBlock(&log_scale, 1);
+  for (const int node : held_nodes(graph)) {
+    const auto i = static_cast<std::size_t>(node);
+    problem_.SetParameterBlockConstant(blocks_.at(i).data());
+    if (has_scales(graph)) problem_.SetParameterBlockConstant(&log_scales_.at(i));
+  }
 }
 
 ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge) const {
@@ -172,10 +224,7 @@ void EdgeProblem::update_edges() {
     const bool is_wanted = weights_[i] > 0.0;
     if (is_wanted == (residuals_[i] != nullptr)) continue;
     if (is_wanted) {
-      const PoseEdge& edge = graph_.edges[i];
-      residuals_[i] = problem_.AddResidualBlock(new EdgeCost(edge), loss_of(i),
-                                                blocks_[static_cast<std::size_t>(edge.a)].data(),
-                                                blocks_[static_cast<std::size_t>(edge.b)].data());
+      residuals_[i] = add_edge(i);
     } else {
       problem_.RemoveResidualBlock(residuals_[i]);
       residuals_[i] = nullptr;
@@ -183,8 +232,20 @@ void EdgeProblem::update_edges() {
   }
 }
 
+ceres::ResidualBlockId EdgeProblem::add_edge(std::size_t i) {
+  const PoseEdge& edge = graph_.edges[i];
+  const auto a = static_cast<std::size_t>(edge.a);
+  const auto b = static_cast<std::size_t>(edge.b);
+  if (!has_scales(graph_))
+    return problem_.AddResidualBlock(new EdgeCost(edge), loss_of(i), blocks_[a].data(),
+                                     blocks_[b].data());
+  return problem_.AddResidualBlock(new ScaledEdgeCost(edge), loss_of(i), blocks_[a].data(),
+                                   blocks_[b].data(), &log_scales_[a], &log_scales_[b]);
+}
+
 void EdgeProblem::start_from_graph() {
   for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i] = to_block(graph_.world_from_node[i]);
+  std::copy(graph_.log_scales.begin(), graph_.log_scales.end(), log_scales_.begin());
 }
 
 PoseGraphSummary EdgeProblem::solve(int max_iterations) {
@@ -199,6 +260,7 @@ PoseGraphSummary EdgeProblem::solve(int max_iterations) {
     graph_.world_from_node[i].rotation.normalize();
     blocks_[i] = to_block(graph_.world_from_node[i]);
   }
+  graph_.log_scales = log_scales_;
   return {summary.initial_cost,
           summary.final_cost,
           static_cast<int>(summary.iterations.size()) - 1,

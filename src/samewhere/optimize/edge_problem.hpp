@@ -27,11 +27,13 @@ class EdgeProblem {
  private:
   ceres::LossFunction* loss_of(std::size_t edge) const;
   void update_edges();
+  ceres::ResidualBlockId add_edge(std::size_t edge);
 
   PoseGraph& graph_;
   Config config_;
   std::vector<double> weights_;  // per edge
   std::vector<PoseBlock> blocks_;
+  std::vector<double> log_scales_;  // per node, or none
   ceres::Problem problem_;
   std::vector<ceres::ResidualBlockId> residuals_;  // per edge; none: without weight
 };

@@ -5,6 +5,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/optimize/edge_problem.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
+#include <samewhere/optimize/scaled_edge.hpp>
 
 namespace samewhere::optimize {
 namespace {
@@ -13,16 +14,20 @@ constexpr double kGrowth = 1.4;  // of the control parameter from round to round
 constexpr int kMaxRounds = 100;  // the parameter has grown by 4e14
 constexpr double kReaches[] = {3000.0, 300.0, 30.0};  // of the limit, see call_back
 constexpr int kMaxChecks = 10;                        // of sides changed after the rounds
-constexpr double kPlanarShare = 11.34 / 16.81;        // chi-square 99 %: 3 degrees of freedom for 6
+// chi-square 99 %: 3 and 7 degrees of freedom for 6
+constexpr double kPlanarShare = 11.34 / 16.81;
+constexpr double kScaledShare = 18.48 / 16.81;
+
+double limit_of(const PoseGraph& graph, const Config& config) {
+  if (graph.is_planar) return kPlanarShare * config.loop_chi2;
+  return (has_scales(graph) ? kScaledShare : 1.0) * config.loop_chi2;
+}
 
 // Graduated non-convexity over the loop edges of a graph.
 class Graduation {
  public:
   Graduation(PoseGraph& graph, const Config& config)
-      : graph_(graph),
-        config_(config),
-        problem_(graph, config),
-        limit_(config.loop_chi2 * (graph.is_planar ? kPlanarShare : 1.0)) {
+      : graph_(graph), config_(config), problem_(graph, config), limit_(limit_of(graph, config)) {
     for (std::size_t i = 0; i < graph.edges.size(); ++i)
       if (graph.edges[i].is_loop) loops_.push_back(i);
   }
@@ -40,6 +45,12 @@ class Graduation {
   }
 
  private:
+  struct State {
+    std::vector<core::Rigid3> poses;
+    std::vector<double> log_scales;
+    std::vector<double> weights;
+  };
+
   void go_on(int max_iterations, PoseGraphSummary& summary) {
     const PoseGraphSummary found = problem_.solve(max_iterations);
     summary.final_cost = found.final_cost;
@@ -74,17 +85,17 @@ class Graduation {
   // that none of its loops fits any more. Once they are out, what fits no worse than `reach` times
   // the limit is asked again; kept if it makes the whole fit better.
   void call_back(double reach, PoseGraphSummary& summary) {
-    const std::vector<core::Rigid3> poses = graph_.world_from_node;
-    const std::vector<double> weights = problem_.weights();
+    const State before{graph_.world_from_node, graph_.log_scales, problem_.weights()};
     const double cost = truncated_cost();
     graduate(1.0 / reach, summary);
     settle(summary);
-    if (truncated_cost() >= cost) go_back(poses, weights);
+    if (truncated_cost() >= cost) go_back(before);
   }
 
-  void go_back(const std::vector<core::Rigid3>& poses, const std::vector<double>& weights) {
-    graph_.world_from_node = poses;
-    for (const std::size_t loop : loops_) problem_.weight(loop) = weights[loop];
+  void go_back(const State& state) {
+    graph_.world_from_node = state.poses;
+    graph_.log_scales = state.log_scales;
+    for (const std::size_t loop : loops_) problem_.weight(loop) = state.weights[loop];
     problem_.start_from_graph();
   }
 
@@ -153,10 +164,17 @@ core::Vector6d edge_error(const PoseEdge& edge, const core::Rigid3& world_from_a
 }
 
 double chi2_of(const PoseGraph& graph, const PoseEdge& edge) {
-  const core::Vector6d error =
-      edge_error(edge, graph.world_from_node[static_cast<std::size_t>(edge.a)],
-                 graph.world_from_node[static_cast<std::size_t>(edge.b)]);
-  return error.dot(edge.information * error);
+  const auto a = static_cast<std::size_t>(edge.a);
+  const auto b = static_cast<std::size_t>(edge.b);
+  if (!has_scales(graph)) {
+    const core::Vector6d error =
+        edge_error(edge, graph.world_from_node[a], graph.world_from_node[b]);
+    return error.dot(edge.information * error);
+  }
+  const Vector7d error = scaled_edge_error(edge, {graph.world_from_node[a], graph.log_scales[a]},
+                                           {graph.world_from_node[b], graph.log_scales[b]});
+  return error.head<6>().dot(edge.information * error.head<6>()) +
+         edge.scale_information * error(6) * error(6);
 }
 
 EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_from_a,

@@ -9,13 +9,16 @@
 namespace samewhere::optimize {
 
 // A measured relative pose of two nodes. The error is [translation in a; rotation on the right],
-// metres and radians.
+// metres (in a graph with scales: units of a) and radians.
 struct PoseEdge {
   int a = 0;
   int b = 0;
   core::Rigid3 a_from_b;
   core::Matrix6d information = core::Matrix6d::Identity();
   bool is_loop = false;  // may be a lie; other edges are believed
+  // In a graph with scales only: the logarithm of b's unit in units of a, and its information.
+  double log_scale = 0.0;
+  double scale_information = 1.0;
 };
 
 // Which of the six numbers of an error a planar graph uses: x, y and the turn about z.
@@ -26,7 +29,13 @@ struct PoseGraph {
   std::vector<PoseEdge> edges;
   std::vector<int> fixed_nodes = {};  // they stay; see held_nodes
   bool is_planar = false;             // every pose and edge lies in the plane z = 0, turned about z
+  // Of a camera without depth, whose unit of length creeps: for each node, the logarithm of its
+  // unit in those of the world. Poses are Sim3 then, as Strasdat, Montiel and Davison (RSS 2010)
+  // have them. Empty: all share one unit. No graph has scales and is planar.
+  std::vector<double> log_scales = {};
 };
+
+inline bool has_scales(const PoseGraph& graph) { return !graph.log_scales.empty(); }
 
 struct PoseGraphSummary {
   double initial_cost = 0.0;  // half of the squared errors, in variances, of the edges believed
@@ -40,17 +49,19 @@ struct PoseGraphSummary {
 // Moves the nodes to where the edges fit best, under Config::loop_loss. With kGnc, a loop edge is
 // believed or refused as a whole: graduated non-convexity for truncated least squares (Yang,
 // Antonante, Tzoumas and Carlone, RA-L 2020), then a check of every loop edge against
-// Config::loop_chi2 in the graph as it came out, and as many solutions more as it takes until no
-// edge changes sides; what was refused is asked again three times, from nearer and nearer. kDcs:
-// Agarwal et al., ICRA 2013. Throws ContractError for an edge to a node that is not there.
+// Config::loop_chi2 (of 6 degrees of freedom; as likely a value where there are 3 or 7) in the
+// graph as it came out, and as many solutions more as it takes until no edge changes sides; what
+// was refused is asked again three times, from nearer and nearer. kDcs: Agarwal et al., ICRA 2013.
+// Throws ContractError for an edge to a node that is not there, and for scales of some nodes alone
+// or of a planar graph.
 PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config);
 
-// Error of an edge, not whitened.
+// Error of an edge, not whitened, of nodes that share one unit.
 core::Vector6d edge_error(const PoseEdge& edge, const core::Rigid3& world_from_a,
                           const core::Rigid3& world_from_b);
 
-// Its squared error in variances, chi-square with 6 degrees of freedom (3 in a planar graph) if
-// the edge tells the truth.
+// Its squared error in variances, chi-square with 6 degrees of freedom (3 in a planar graph, 7 in
+// one with scales) if the edge tells the truth.
 double chi2_of(const PoseGraph& graph, const PoseEdge& edge);
 
 // Derivatives of the error by retract() at a and b.
