@@ -109,13 +109,12 @@ class Haul {
     const core::TimingSummary wall = core::summarize(part_.wall_ms);
     const core::TimingSummary own = core::summarize(part_.processor_ms);
     const Memory memory = memory_now();
-    table_.rows.push_back({std::to_string(num_fed), std::to_string(num_keyframes_),
-                           std::to_string(num_live_keyframes_), std::to_string(num_live_landmarks_),
-                           std::to_string(num_loops_),
-                           fmt::format("{:.1f} / {:.1f}", own.median_ms, own.p99_ms),
-                           fmt::format("{:.1f} / {:.1f}", wall.median_ms, wall.p99_ms),
-                           fmt::format("{:.0f}", memory.own_mib),
-                           fmt::format("{:.0f}", memory.mapped_mib)});
+    table_.rows.push_back(
+        {std::to_string(num_fed), std::to_string(num_keyframes_),
+         std::to_string(num_live_keyframes_), std::to_string(num_live_landmarks_),
+         std::to_string(num_loops_), fmt::format("{:.1f} / {:.1f}", own.median_ms, own.p99_ms),
+         fmt::format("{:.1f} / {:.1f}", wall.median_ms, wall.p99_ms),
+         fmt::format("{:.0f}", memory.own_mib), fmt::format("{:.0f}", memory.mapped_mib)});
     part_ = {};
   }
 
@@ -125,10 +124,10 @@ class Haul {
   std::atomic<std::size_t> num_live_landmarks_ = 0;
   std::atomic<std::size_t> num_loops_ = 0;
   Part part_;
-  Table table_{{"frames", "keyframes", "live", "landmarks", "loops",
-                "tracking, processor ms median / p99", "wall ms median / p99", "memory MiB",
-                "mapped files MiB"},
-               {}};
+  Table table_{
+      {"frames", "keyframes", "live", "landmarks", "loops", "tracking, processor ms median / p99",
+       "wall ms median / p99", "memory MiB", "mapped files MiB"},
+      {}};
   std::unique_ptr<core::Source> source_;
   pipeline::Slam slam_;
 };

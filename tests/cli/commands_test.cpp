@@ -157,9 +157,9 @@ TEST_F(Commands, WithoutOutNothingIsOverwritten) {
 }
 
 TEST_F(Commands, CtrlCFinishesTheFilesAndIsExitCode130) {
-  const Outcome cut =
-      interrupt_program("run 'twin:office-loop?seed=2' --out " + quoted(path("cut")),
-                        "[ -e " + quoted(path("cut/map.sw")) + " ]", folder_.root());
+  const Outcome cut = interrupt_program(
+      "run 'twin:office-loop?seed=2' --set twin.num_frames=120 --out " + quoted(path("cut")),
+      "[ -e " + quoted(path("cut/map.sw")) + " ]", folder_.root());
   EXPECT_EQ(cut.exit_code, 130) << cut.err;
   for (const char* file :
        {"trajectory.tum", "frames.csv", "loops.json", "map.ply", "config.yaml", "report.html"}) {

@@ -29,8 +29,8 @@ class MapOfARun : public testing::Test {
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
-    execl(SAMEWHERE_PROGRAM, SAMEWHERE_PROGRAM, "run", "twin:office-loop?seed=2", "--out",
-          out.c_str(), nullptr);
+    execl(SAMEWHERE_PROGRAM, SAMEWHERE_PROGRAM, "run", "twin:office-loop?seed=2", "--set",
+          "twin.num_frames=150", "--out", out.c_str(), nullptr);
     _exit(127);
   }
 

@@ -28,20 +28,47 @@ struct Outcome {
 // A frame as it reaches the program; nothing: it does not.
 using Disturb = std::function<std::optional<core::Frame>(core::Frame)>;
 
-Outcome outcome_of(const Disturb& disturb) {
-  cv::setNumThreads(1);
+Config walk_config() {
   Config config;
   config.source = "twin:office-loop?seed=7";
   config.twin.num_frames = kNumFrames;
   config.retrieve.window_frames = 75;
-  const auto source = open_source(config);
-  const core::Trajectory truth = source->truth().trajectory;
-  Slam slam(config);
+  return config;
+}
+
+struct Walk {
+  std::vector<core::Frame> frames;
+  core::Trajectory truth;
+};
+
+// Rendered once: that takes longer than to track it.
+const Walk& walk() {
+  static const Walk walk = [] {
+    const auto source = open_source(walk_config());
+    Walk rendered{{}, source->truth().trajectory};
+    while (auto frame = source->next()) rendered.frames.push_back(std::move(*frame));
+    return rendered;
+  }();
+  return walk;
+}
+
+// With pictures of its own, to be disturbed.
+core::Frame copy_of(const core::Frame& frame) {
+  core::Frame copy = frame;
+  copy.images[0] = frame.images[0].clone();
+  copy.depth_m = frame.depth_m->clone();
+  return copy;
+}
+
+Outcome outcome_of(const Disturb& disturb) {
+  cv::setNumThreads(1);
+  const core::Trajectory& truth = walk().truth;
+  Slam slam(walk_config());
   Outcome outcome{.is_measured = std::vector<bool>(kNumFrames, false)};
   std::vector<std::size_t> fed;
-  while (auto frame = source->next()) {
-    const std::size_t position = frame->id.index();
-    auto disturbed = disturb(std::move(*frame));
+  for (const core::Frame& frame : walk().frames) {
+    const std::size_t position = frame.id.index();
+    auto disturbed = disturb(copy_of(frame));
     if (!disturbed) continue;
     disturbed->id = core::FrameId(fed.size());
     fed.push_back(position);
@@ -83,7 +110,6 @@ TEST(Disturbance, InTwoSecondsOfDarkThereIsNoPoseAndThenThereIsARightOneAgain) {
 TEST(Disturbance, ALensThatIsHalfCoveredLeavesTheOtherHalf) {
   const Outcome outcome = outcome_of([](core::Frame frame) {
     if (is_between(frame, 50, 79)) {
-      frame.images[0] = frame.images[0].clone();
       const cv::Rect covered(0, 0, frame.images[0].cols / 2, frame.images[0].rows);
       frame.images[0](covered).setTo(10);
     }
