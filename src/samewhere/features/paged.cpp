@@ -23,9 +23,8 @@ std::size_t num_bytes(const Features& f) {
 }
 
 cv::Mat copy_of(const cv::Mat& bytes, std::pmr::memory_resource& memory) {
-  if (bytes.empty()) return {bytes.rows, bytes.cols, CV_8U};
   cv::Mat copy(bytes.rows, bytes.cols, CV_8U, memory.allocate(bytes.total(), kAlignment));
-  bytes.copyTo(copy);
+  if (!bytes.empty()) bytes.copyTo(copy);  // or the copy loses its number of columns
   return copy;
 }
 
