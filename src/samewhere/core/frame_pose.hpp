@@ -27,6 +27,9 @@ struct FramePose {
   Matrix6d information =
       Matrix6d::Identity();  // of reference_from_frame, order [m; rad], from the drift model
   int num_inliers = 0;
+  // Of the reference keyframe, when this was measured (scene/rescale.hpp): who asks later, asks
+  // scene::reference_from_frame().
+  double log_scale = 0.0;
 };
 
 }  // namespace samewhere::core

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <samewhere/core/errors.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
@@ -8,9 +10,27 @@ namespace {
 using scene::LoopEdge;
 using scene::MapVersion;
 
-optimize::PoseEdge as_edge(const LoopEdge& loop) {
-  return {static_cast<int>(loop.match.index()), static_cast<int>(loop.query.index()),
-          loop.match_from_query, loop.information, true};
+optimize::PoseEdge as_edge(const LoopEdge& loop, const optimize::Config& config) {
+  return {static_cast<int>(loop.match.index()),
+          static_cast<int>(loop.query.index()),
+          loop.match_from_query,
+          loop.information,
+          true,
+          loop.log_scale,
+          1.0 / (config.loop_scale_sigma * config.loop_scale_sigma)};
+}
+
+// Odometry saw both in one scale, and what came since is counted.
+optimize::PoseEdge odometry_edge(const MapVersion& map, const scene::Keyframe& keyframe,
+                                 const optimize::Config& config) {
+  const core::KeyframeId parent = keyframe.odometry->parent;
+  return {static_cast<int>(parent.index()),
+          static_cast<int>(keyframe.id.index()),
+          parent_from_keyframe(keyframe),
+          keyframe.odometry->information,
+          false,
+          map.at(parent).log_scale - keyframe.log_scale,
+          1.0 / (config.odometry_scale_sigma * config.odometry_scale_sigma)};
 }
 
 std::vector<scene::PoseChange> moves_to(const MapVersion& map, const optimize::PoseGraph& graph) {
@@ -19,7 +39,8 @@ std::vector<scene::PoseChange> moves_to(const MapVersion& map, const optimize::P
     if (!is_live(map.keyframes[i])) continue;
     const core::Rigid3 new_from_old =
         graph.world_from_node[i] * inverse(map.keyframes[i].world_from_body);
-    moves.push_back({map.keyframes[i].id, new_from_old});
+    moves.push_back({map.keyframes[i].id, new_from_old,
+                     has_scales(graph) ? std::exp(graph.log_scales[i]) : 1.0});
   }
   return moves;
 }
@@ -58,16 +79,16 @@ bool is_of(const std::vector<BentLoop>& bent, core::CandidateId cause) {
 
 }  // namespace
 
-optimize::PoseGraph pose_graph_of(const MapVersion& map) {
+optimize::PoseGraph pose_graph_of(const MapVersion& map, const optimize::Config& config) {
   optimize::PoseGraph graph;
+  if (is_without_depth(map)) graph.log_scales.assign(map.keyframes.size(), 0.0);
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
     const scene::Keyframe& keyframe = map.keyframes[i];
     graph.world_from_node.push_back(keyframe.world_from_body);
-    if (!keyframe.odometry || !is_live(keyframe)) continue;
-    graph.edges.push_back({static_cast<int>(keyframe.odometry->parent.index()), static_cast<int>(i),
-                           parent_from_keyframe(keyframe), keyframe.odometry->information, false});
+    if (keyframe.odometry && is_live(keyframe))
+      graph.edges.push_back(odometry_edge(map, keyframe, config));
   }
-  for (const auto& known : map.loops) graph.edges.push_back(as_edge(known));
+  for (const auto& known : map.loops) graph.edges.push_back(as_edge(known, config));
   return graph;
 }
 
@@ -76,13 +97,16 @@ std::optional<LoopEdge> between_holders(const MapVersion& map, const LoopEdge& l
   const scene::Holder query = holder_of(map, loop.query);
   if (query.keyframe == match.keyframe) return std::nullopt;
   return LoopEdge{
-      query.keyframe, match.keyframe,
+      query.keyframe,
+      match.keyframe,
       match.holder_from_keyframe * loop.match_from_query * inverse(query.holder_from_keyframe),
-      loop.information, loop.cause};
+      loop.information,
+      loop.cause,
+      loop.log_scale};
 }
 
 scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
-  optimize::PoseGraph graph = pose_graph_of(map);
+  optimize::PoseGraph graph = pose_graph_of(map, config);
   solve_pose_graph(graph, config);
   scene::Edit edit;
   edit.pose_changes = moves_to(map, graph);
@@ -91,10 +115,10 @@ scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
 
 Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::Config& config) {
   core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
-  optimize::PoseGraph graph = pose_graph_of(map);
+  optimize::PoseGraph graph = pose_graph_of(map, config);
   const std::size_t num_before = graph.edges.size();
   const std::vector<LoopEdge> claims = claims_of(map, loop);
-  for (const auto& claim : claims) graph.edges.push_back(as_edge(claim));
+  for (const auto& claim : claims) graph.edges.push_back(as_edge(claim, config));
   const optimize::PoseGraphSummary summary = solve_pose_graph(graph, config);
 
   const Answer on_claims = answer_on(claims, num_before, graph, summary);

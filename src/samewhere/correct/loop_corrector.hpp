@@ -9,8 +9,8 @@
 namespace samewhere::correct {
 
 // Keyframes as nodes, by position, joined by their odometry and by the loops that the map believes.
-// Culled keyframes hang on no edge.
-optimize::PoseGraph pose_graph_of(const scene::MapVersion& map);
+// Culled keyframes hang on no edge. Of a camera without depth, a graph with scales.
+optimize::PoseGraph pose_graph_of(const scene::MapVersion& map, const optimize::Config& config);
 
 // The same loop between the keyframes that its own two hang on by now. Nothing if both hang on one.
 std::optional<scene::LoopEdge> between_holders(const scene::MapVersion& map,

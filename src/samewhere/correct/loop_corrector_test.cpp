@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
+#include <samewhere/features/test_world.hpp>
 
 namespace samewhere::correct {
 namespace {
@@ -16,7 +18,10 @@ struct Walk {
   std::vector<core::Rigid3> truth;
 };
 
-Walk square_walk(double turn_error_rad) {
+// Without depth, the scale creeps by that share at every step.
+Walk square_walk(double turn_error_rad, std::optional<double> creep = {}) {
+  const features::View view =
+      features::test_view(features::test_world(1, 20), 0, core::Rigid3{}, 0.0, !creep);
   Walk walk;
   walk.truth = {core::Rigid3{}};
   scene::Edit edit;
@@ -24,11 +29,14 @@ Walk square_walk(double turn_error_rad) {
   for (int i = 0; i <= 40; ++i) {
     scene::Keyframe keyframe;
     keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
+    keyframe.view = view;
+    keyframe.slots.resize(static_cast<std::size_t>(view.features->size()));
     if (i > 0) {
       const core::Rigid3 step{core::exp_so3({0.0, i % 10 == 0 ? 1.5707963 : 0.0, 0.0}),
                               {0.0, 0.0, 1.0}};
-      const core::Rigid3 measured =
+      core::Rigid3 measured =
           step * core::Rigid3{core::exp_so3({0.0, turn_error_rad, 0.0}), {0, 0, 0}};
+      measured.translation *= std::exp(-creep.value_or(0.0) * (i - 1));
       walk.truth.push_back(walk.truth.back() * step);
       estimate = estimate * measured;
       keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), measured,
@@ -70,6 +78,41 @@ TEST(CloseLoop, ATrueLoopTakesTheDriftOut) {
   EXPECT_LT(worst_error_m(walk, closed), 0.25 * before);
   EXPECT_EQ(closed.loops.size(), 1U);
   EXPECT_EQ(closed.number, walk.map.number + 1);
+}
+
+TEST(CloseLoop, WithoutDepthItTakesTheCreepingScaleOut) {
+  constexpr double kCreep = 0.005;
+  Walk walk = square_walk(0.002, kCreep);
+  scene::Edit seen;
+  scene::Landmark landmark;
+  landmark.id = core::LandmarkId(0);
+  landmark.anchor = core::KeyframeId(40);
+  landmark.position_in_anchor = {0.0, 0.0, std::exp(-40 * kCreep)};  // in truth 1 m ahead
+  seen.landmarks = {landmark};
+  walk.map = apply(std::move(walk.map), seen);
+
+  scene::LoopEdge loop = true_loop(walk, 40, 0);
+  loop.log_scale = 40 * kCreep;
+  const Closing closing = close_loop(walk.map, loop, {});
+  ASSERT_EQ(closing.believed.size(), 1U);
+  const scene::MapVersion corrected = apply(walk.map, closing.edit);
+  EXPECT_LT(worst_error_m(walk, corrected), 0.3 * worst_error_m(walk, walk.map));
+  EXPECT_NEAR(corrected.landmarks[0].position_in_anchor.z(), 1.0, 0.1);
+  EXPECT_NEAR(corrected.loops[0].log_scale, 0.0, 0.1) << "both ends are of one scale now";
+
+  // what was found is remembered: solved again, nothing moves
+  const scene::MapVersion again = apply(corrected, solve_poses(corrected, {}));
+  EXPECT_LT((again.keyframes[20].world_from_body.translation -
+             corrected.keyframes[20].world_from_body.translation)
+                .norm(),
+            1e-3);
+  // without the loop, the scale creeps back
+  const scene::MapVersion without = apply(corrected, withdraw_loop(corrected, loop.cause, {}));
+  EXPECT_LT((without.keyframes[20].world_from_body.translation -
+             walk.map.keyframes[20].world_from_body.translation)
+                .norm(),
+            1e-2);
+  EXPECT_NEAR(without.landmarks[0].position_in_anchor.z(), std::exp(-40 * kCreep), 1e-3);
 }
 
 TEST(CloseLoop, TheFirstKeyframeStays) {

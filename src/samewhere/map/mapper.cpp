@@ -21,8 +21,7 @@ double median_depth_m(const features::View& view) {
 // Of the landmarks that the view shows, along its optical axis.
 double median_landmark_depth_m(const scene::MapVersion& map, const TrackedView& tracked) {
   const core::Rigid3 camera_from_world =
-      inverse(world_from_body(map, tracked.pose.reference_keyframe) *
-              tracked.pose.reference_from_frame * tracked.view.rig->body_from_camera[0]);
+      inverse(world_from_frame(map, tracked.pose) * tracked.view.rig->body_from_camera[0]);
   std::vector<double> depths;
   for (const auto& [feature, landmark] : tracked.landmarks)
     depths.push_back((camera_from_world * position_in_world(map, map.at(landmark))).z());
@@ -79,11 +78,6 @@ scene::Edit with_new_landmarks(const scene::MapVersion& map, scene::Keyframe key
   return edit;
 }
 
-// Whether the map was started from two views of one camera.
-bool is_without_depth(const scene::MapVersion& map) {
-  return num_with_depth(map.keyframes[0].view) == 0;
-}
-
 scene::Keyframe next_keyframe(const scene::MapVersion& map, const features::View& view,
                               const core::Rigid3& world_from_body) {
   scene::Keyframe keyframe;
@@ -120,7 +114,7 @@ bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
       has_depth ? config.max_move_ratio : config.max_move_ratio_without_depth;
   const double min_tracked_ratio =
       has_depth ? config.min_tracked_ratio : config.min_tracked_ratio_without_depth;
-  const core::Rigid3& moved = tracked.pose.reference_from_frame;
+  const core::Rigid3 moved = reference_from_frame(map, tracked.pose);
   const bool is_far = moved.translation.norm() > max_move_ratio * depth_m;
   const bool is_turned = core::angle_rad(moved.rotation) > config.max_turn_rad;
   const int num_in_reference = num_proven_landmarks(map, map.at(tracked.pose.reference_keyframe));
@@ -170,12 +164,13 @@ scene::Edit give_up(const scene::MapVersion& map) {
 
 scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked) {
   const core::FramePose& pose = tracked.pose;
-  scene::Keyframe keyframe = next_keyframe(
-      map, tracked.view, world_from_body(map, pose.reference_keyframe) * pose.reference_from_frame);
+  scene::Keyframe keyframe = next_keyframe(map, tracked.view, world_from_frame(map, pose));
   // a reference that was culled since then hangs on another: the edge goes there
   const scene::Holder holder = holder_of(map, pose.reference_keyframe);
-  keyframe.odometry = {holder.keyframe, holder.holder_from_keyframe * pose.reference_from_frame,
+  keyframe.odometry = {holder.keyframe,
+                       holder.holder_from_keyframe * reference_from_frame(map, pose),
                        pose.information};
+  keyframe.log_scale = map.at(holder.keyframe).log_scale;
   std::vector<bool> is_taken(keyframe.slots.size(), false);
   std::vector<scene::Sighting> sightings;
   std::set<core::LandmarkId> seen;

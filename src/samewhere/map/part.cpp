@@ -199,8 +199,7 @@ TrackedView without_parted(const MapVersion& map, TrackedView tracked,
                            const features::Config& features) {
   const core::FramePose& pose = tracked.pose;
   const core::Rigid3 camera_from_world =
-      inverse(world_from_body(map, pose.reference_keyframe) * pose.reference_from_frame *
-              tracked.view.rig->body_from_camera[0]);
+      inverse(world_from_frame(map, pose) * tracked.view.rig->body_from_camera[0]);
   std::erase_if(tracked.landmarks, [&](const auto& shown) {
     const auto& [feature, id] = shown;
     const Eigen::Vector3d point = position_in_world(map, survivor_of(map, id));

@@ -17,6 +17,8 @@ struct Config {
   double loop_huber = 3.0;
   double loop_dcs = 1.0;
   int gnc_iterations = 3;
+  double odometry_scale_sigma = 0.01;
+  double loop_scale_sigma = 0.05;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
@@ -56,6 +58,17 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "iterations of the graph per round of graduated non-convexity",
          .min = 1,
          .max = 100});
+  visit(
+      "odometry_scale_sigma", config.odometry_scale_sigma,
+      {.help = "of a camera without depth, how far its scale creeps from one keyframe to the next, "
+               "as a share",
+       .min = 1e-6,
+       .max = 1.0});
+  visit("loop_scale_sigma", config.loop_scale_sigma,
+        {.help = "of a camera without depth, error of the scale between both ends of a loop, as a "
+                 "share",
+         .min = 1e-6,
+         .max = 1.0});
 }
 
 }  // namespace samewhere::optimize

@@ -116,7 +116,7 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   const double scale = evaluation.ate ? evaluation.ate->scale : 1.0;
   evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory, 1.0, scale);
   evaluation.num_candidates = findings.num_candidates;
-  evaluation.loops = evaluate::check_loops(findings.loops, truth);
+  evaluation.loops = evaluate::check_loops(findings.loops, truth, scale);
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
   evaluation.num_withdrawn = findings.num_withdrawn;
   evaluation.knows_impostors = !truth.impostors.empty();

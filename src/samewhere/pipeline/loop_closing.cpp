@@ -1,6 +1,8 @@
+#include <cmath>
 #include <utility>
 
 #include <samewhere/pipeline/loop_closing.hpp>
+#include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::pipeline {
@@ -15,6 +17,46 @@ std::set<core::KeyframeId> neighbours_of(const scene::MapVersion& map, core::Key
   }
   return neighbours;
 }
+
+// The keyframes that frames are, as a version of the map has them.
+class Places {
+ public:
+  Places(const scene::MapVersion& map, const KeyframeOf& keyframe_of)
+      : map_(map), keyframe_of_(keyframe_of), is_without_depth_(scene::is_without_depth(map)) {}
+
+  MapKnowledge knowledge(const Config& config) const {
+    MapKnowledge knowledge;
+    knowledge.measure_odometry = [this, &config](const core::Candidate& candidate,
+                                                 const core::Sim3& match_from_query) {
+      return std::optional(verify::measure_odometry(
+          map_, at(candidate.query), at(candidate.match), rigid_part(match_from_query),
+          config.optimize.odometry_scale_sigma, config.verify));
+    };
+    if (is_without_depth_)
+      knowledge.view_of = [this](core::FrameId frame) {
+        return with_known_depths(map_, at(frame));
+      };
+    return knowledge;
+  }
+
+  scene::LoopEdge edge_of(const core::LedgerRow& row, const core::LoopClosure& loop) const {
+    return {
+        at(row.candidate.query), at(row.candidate.match), rigid_part(*loop.match_from_query),
+        loop.information,        loop.candidate,          std::log(loop.match_from_query->scale)};
+  }
+
+ private:
+  // Without depth, a culled keyframe knows nothing of how far away things are; what it hangs on
+  // does.
+  core::KeyframeId at(core::FrameId frame) const {
+    const core::KeyframeId id = keyframe_of_.at(frame);
+    return is_without_depth_ ? holder_of(map_, id).keyframe : id;
+  }
+
+  const scene::MapVersion& map_;
+  const KeyframeOf& keyframe_of_;
+  bool is_without_depth_;
+};
 
 }  // namespace
 
@@ -49,21 +91,18 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
     detector_.remember(*answer.descriptor, view);
     return answer;
   }
-  const auto measure_odometry = [&](const core::Candidate& candidate,
-                                    const core::Sim3& match_from_query) {
-    return std::optional(verify::measure_odometry(map, question.keyframe,
-                                                  keyframe_of_.at(candidate.match),
-                                                  rigid_part(match_from_query), config_.verify));
-  };
+  const Places places(map, keyframe_of_);
   const std::set<core::KeyframeId> neighbours =
       neighbours_of(map, question.keyframe, config_.map.min_shared);
   const auto is_connected = [&](core::FrameId match) {
     return neighbours.contains(holder_of(map, keyframe_of_.at(match)).keyframe);
   };
-  answer.rows = detector_.look(question.image, view, measure_odometry, is_connected, timings_);
+  answer.rows =
+      detector_.look(question.image, view, places.knowledge(config_), is_connected, timings_);
   for (const auto& row : answer.rows) {
     const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
-    if (loop != nullptr && loop->match_from_query) answer.loops.push_back(edge_of(row, *loop));
+    if (loop != nullptr && loop->match_from_query)
+      answer.loops.push_back(places.edge_of(row, *loop));
   }
   answer.descriptor = detector_.descriptor(detector_.num_descriptors() - 1);
   return answer;
@@ -79,12 +118,6 @@ LoopAnswer LoopClosing::answer(const FindPlace& question) {
   if (place->match_from_query)
     answer.place->keyframe_from_body = rigid_part(*place->match_from_query);
   return answer;
-}
-
-scene::LoopEdge LoopClosing::edge_of(const core::LedgerRow& row,
-                                     const core::LoopClosure& loop) const {
-  return {keyframe_of_.at(row.candidate.query), keyframe_of_.at(row.candidate.match),
-          rigid_part(*loop.match_from_query), loop.information, loop.candidate};
 }
 
 }  // namespace samewhere::pipeline

@@ -11,6 +11,9 @@
 
 namespace samewhere::pipeline {
 
+// Which keyframes frames are.
+using KeyframeOf = std::map<core::FrameId, core::KeyframeId>;
+
 // The third stage: have I been here before, and is it really the same place? Owns the place index
 // and the ledger.
 class LoopClosing {
@@ -30,13 +33,12 @@ class LoopClosing {
   LoopAnswer answer(const FindLoops& question);
   // Which place of the whole map is this? The judge of loops decides.
   LoopAnswer answer(const FindPlace& question);
-  scene::LoopEdge edge_of(const core::LedgerRow& row, const core::LoopClosure& loop) const;
 
   Config config_;
   core::Timings timings_;
   LoopDetector detector_;
   core::Ledger ledger_;
-  std::map<core::FrameId, core::KeyframeId> keyframe_of_;  // of views that are remembered
+  KeyframeOf keyframe_of_;  // of views that are remembered
 };
 
 }  // namespace samewhere::pipeline

@@ -9,7 +9,7 @@ LoopDetector::LoopDetector(const Config& config)
                 static_cast<std::uint64_t>(config.seed)} {}
 
 std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const features::View& view,
-                                                const MeasureOdometry& measure_odometry,
+                                                const MapKnowledge& map,
                                                 const IsConnected& is_connected,
                                                 core::Timings& timings) {
   core::Descriptor descriptor;
@@ -24,7 +24,7 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
   }
   std::erase_if(candidates, [&](const core::Candidate& c) { return is_connected(c.match); });
   const core::ScopedTimer timer(timings, "verify");
-  return judge(candidates, view, measure_odometry);
+  return judge(candidates, view, map);
 }
 
 std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
@@ -33,11 +33,12 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
   const core::ScopedTimer timer(timings, "recognise");
   const core::Descriptor descriptor = describe(view.frame, image);
   constexpr int kNoWindow = 0;
-  const auto no_odometry = [](const core::Candidate&, const core::Sim3&) { return std::nullopt; };
+  const MapKnowledge nothing{
+      [](const core::Candidate&, const core::Sim3&) { return std::nullopt; }};
   std::vector<core::LedgerRow> rows;
   for (const auto& candidate :
        retrieve::compare(descriptor, retriever_.search(descriptor, kNoWindow)))
-    rows.push_back(judged(candidate, view, no_odometry));
+    rows.push_back(judged(candidate, view, nothing));
   return rows;
 }
 
@@ -58,10 +59,10 @@ std::vector<retrieve::FoundView> LoopDetector::search(const core::Descriptor& de
 
 std::vector<core::LedgerRow> LoopDetector::judge(const std::vector<core::Candidate>& candidates,
                                                  const features::View& view,
-                                                 const MeasureOdometry& measure_odometry) {
+                                                 const MapKnowledge& map) {
   std::vector<core::LedgerRow> rows;
   for (const core::Candidate& candidate : candidates) {
-    rows.push_back(judged(candidate, view, measure_odometry));
+    rows.push_back(judged(candidate, view, map));
     if (core::is_loop(rows.back().verdict)) history_.last_loop_query = view.frame;
   }
   views_.emplace(view.frame, view);
@@ -69,22 +70,31 @@ std::vector<core::LedgerRow> LoopDetector::judge(const std::vector<core::Candida
 }
 
 core::LedgerRow LoopDetector::judged(core::Candidate candidate, const features::View& view,
-                                     const MeasureOdometry& measure_odometry) {
+                                     const MapKnowledge& map) {
   candidate.id = core::CandidateId(num_candidates_++, view.frame.session());
-  return {candidate, verdict_on(candidate, view, measure_odometry)};
+  return {candidate, verdict_on(candidate, view, map)};
 }
 
 core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const features::View& view,
-                                       const MeasureOdometry& measure_odometry) const {
+                                       const MapKnowledge& map) const {
   core::Evidence evidence{.similarity = candidate.similarity};
   if (auto refused = verify::refuse_early(candidate, evidence, history_, settings_.verify))
     return *refused;
-  evidence.geometry =
-      verify::measure_geometry(candidate, view, views_.at(candidate.match), settings_);
-  if (evidence.geometry->match_from_query) {
-    evidence.odometry = measure_odometry(candidate, *evidence.geometry->match_from_query);
-  }
+  evidence.geometry = measure_geometry(candidate, view, map.view_of);
+  if (evidence.geometry->match_from_query)
+    evidence.odometry = map.measure_odometry(candidate, *evidence.geometry->match_from_query);
   return verify::decide(candidate, evidence, history_, settings_.verify);
+}
+
+core::GeometryEvidence LoopDetector::measure_geometry(const core::Candidate& candidate,
+                                                      const features::View& view,
+                                                      const ViewOf& view_of) const {
+  if (!view_of)
+    return verify::measure_geometry(candidate, view, views_.at(candidate.match), settings_);
+  verify::MeasureSettings settings = settings_;
+  settings.has_one_scale = false;
+  return verify::measure_geometry(candidate, view_of(candidate.query), view_of(candidate.match),
+                                  settings);
 }
 
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,

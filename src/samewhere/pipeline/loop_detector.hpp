@@ -26,6 +26,15 @@ using MeasureOdometry = std::function<std::optional<core::OdometryEvidence>(
 // them would say nothing new.
 using IsConnected = std::function<bool(core::FrameId match)>;
 
+// A view that was looked at, with the depths that the map has worked out for it by now.
+using ViewOf = std::function<features::View(core::FrameId frame)>;
+
+// What the map says to the judge.
+struct MapKnowledge {
+  MeasureOdometry measure_odometry;
+  ViewOf view_of = {};  // of a camera without depth: so its views have some, each in its own scale
+};
+
 // Have I been here before? Describe the view, search those that look alike, judge each one.
 class LoopDetector {
  public:
@@ -35,8 +44,8 @@ class LoopDetector {
   // Views that are connected with it are no candidates. Frames ascend. The steps below, timed as
   // "describe", "retrieve" and "verify".
   std::vector<core::LedgerRow> look(const cv::Mat& image, const features::View& view,
-                                    const MeasureOdometry& measure_odometry,
-                                    const IsConnected& is_connected, core::Timings& timings);
+                                    const MapKnowledge& map, const IsConnected& is_connected,
+                                    core::Timings& timings);
 
   // The same for a view whose place nobody knows: any remembered view may match it, however young;
   // odometry says nothing, and the view itself is not remembered.
@@ -58,14 +67,16 @@ class LoopDetector {
   core::Descriptor describe(core::FrameId frame, const cv::Mat& image);
   std::vector<retrieve::FoundView> search(const core::Descriptor& descriptor);
   std::vector<core::LedgerRow> judge(const std::vector<core::Candidate>& candidates,
-                                     const features::View& view,
-                                     const MeasureOdometry& measure_odometry);
+                                     const features::View& view, const MapKnowledge& map);
 
  private:
   core::LedgerRow judged(core::Candidate candidate, const features::View& view,
-                         const MeasureOdometry& measure_odometry);
+                         const MapKnowledge& map);
   core::Verdict verdict_on(const core::Candidate& candidate, const features::View& view,
-                           const MeasureOdometry& measure_odometry) const;
+                           const MapKnowledge& map) const;
+
+  core::GeometryEvidence measure_geometry(const core::Candidate& candidate,
+                                          const features::View& view, const ViewOf& view_of) const;
 
   std::unique_ptr<describe::Describer> describer_;  // of describe()
 

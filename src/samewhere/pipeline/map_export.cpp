@@ -50,7 +50,7 @@ void export_map(const scene::StoredMap& stored, const MapExports& wanted) {
   if (!wanted.tum.empty()) core::write_file(wanted.tum, core::tum_text(trajectory));
   if (!wanted.kitti.empty()) core::write_file(wanted.kitti, core::kitti_text(trajectory));
   if (!wanted.g2o.empty())
-    core::write_file(wanted.g2o, optimize::g2o_text(correct::pose_graph_of(stored.map)));
+    core::write_file(wanted.g2o, optimize::g2o_text(correct::pose_graph_of(stored.map, {})));
 }
 
 }  // namespace samewhere::pipeline

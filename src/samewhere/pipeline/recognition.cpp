@@ -92,7 +92,7 @@ void Recognition::judge(const SearchedFrame& searched) {
     candidates = retrieve::compare(descriptor, searched.found);
   }
   const core::ScopedTimer timer(judge_timings_, "verify");
-  const auto rows = detector_.judge(candidates, view, without_odometry);
+  const auto rows = detector_.judge(candidates, view, {without_odometry});
   report::RunRecord& record = found_.record;
   record.thumbnails[view.frame] = thumbnail;
   record.ledger.insert(record.ledger.end(), rows.begin(), rows.end());

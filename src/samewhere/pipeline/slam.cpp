@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include <Eigen/LU>
@@ -133,17 +134,16 @@ void Slam::require_finished() const {
 
 namespace {
 
-// Frames placed in the world by their reference keyframes.
-template <class WorldFromKeyframe>
+// Frames placed in the world.
+template <class WorldFromFrame>
 core::Trajectory placed(const scene::MapVersion& map, const std::vector<core::FramePose>& frames,
-                        const WorldFromKeyframe& world_from_keyframe) {
+                        const WorldFromFrame& world_from_frame) {
   core::Trajectory trajectory;
   for (const auto& frame : frames) {
     if (!frame.is_measured) continue;
     const core::Rigid3& body_from_camera =
         map.at(frame.reference_keyframe).view.rig->body_from_told_camera();
-    trajectory.push_back({frame.stamp_s, world_from_keyframe(frame.reference_keyframe) *
-                                             frame.reference_from_frame * body_from_camera});
+    trajectory.push_back({frame.stamp_s, world_from_frame(frame) * body_from_camera});
   }
   return trajectory;
 }
@@ -152,13 +152,18 @@ core::Trajectory placed(const scene::MapVersion& map, const std::vector<core::Fr
 
 core::Trajectory trajectory_of(const scene::MapVersion& map,
                                const std::vector<core::FramePose>& frames) {
-  return placed(map, frames, [&](core::KeyframeId id) { return world_from_body(map, id); });
+  return placed(map, frames,
+                [&](const core::FramePose& frame) { return scene::world_from_frame(map, frame); });
 }
 
 core::Trajectory odometry_of(const scene::MapVersion& map,
                              const std::vector<core::FramePose>& frames) {
   const std::vector<core::Rigid3> world_from_body = scene::odometry_poses(map);
-  return placed(map, frames, [&](core::KeyframeId id) { return world_from_body[id.index()]; });
+  return placed(map, frames, [&](const core::FramePose& frame) {
+    core::Rigid3 reference_from_frame = frame.reference_from_frame;
+    reference_from_frame.translation *= std::exp(-frame.log_scale);
+    return world_from_body[frame.reference_keyframe.index()] * reference_from_frame;
+  });
 }
 
 std::vector<evaluate::MeasuredMotion> odometry_chains_of(const scene::MapVersion& map,

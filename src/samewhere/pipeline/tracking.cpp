@@ -173,6 +173,7 @@ void Tracking::follow(map::TrackedView& tracked) {
 core::FramePose Tracking::relative_to(core::KeyframeId reference, core::FramePose pose) const {
   pose.reference_from_frame = inverse(world_from_body(map_, reference)) * world_from(pose);
   pose.reference_keyframe = reference;
+  pose.log_scale = map_.at(reference).log_scale;
   pose.information = track::odometry_information(
       pose.reference_from_frame, pose.status == core::FrameStatus::kWeak, config_.track.drift);
   return pose;
@@ -309,12 +310,13 @@ bool Tracking::is_kept(const map::TrackedView& tracked) const {
 }
 
 core::Rigid3 Tracking::world_from(const core::FramePose& pose) const {
-  return world_from_body(map_, pose.reference_keyframe) * pose.reference_from_frame;
+  return world_from_frame(map_, pose);
 }
 
 map::TrackedView Tracking::tracked_view(const features::View& view,
                                         const track::Track& track) const {
   map::TrackedView tracked{view, track.pose, {}};
+  tracked.pose.log_scale = map_.at(track.pose.reference_keyframe).log_scale;
   for (const auto& match : track.matches) {
     tracked.landmarks.emplace_back(match.second,
                                    local_map_.landmarks[static_cast<std::size_t>(match.first)]);

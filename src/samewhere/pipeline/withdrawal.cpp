@@ -6,6 +6,8 @@
 #include <samewhere/map/local_bundle.hpp>
 #include <samewhere/map/part.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
+#include <samewhere/scene/local_map.hpp>
+#include <samewhere/track/tracker.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -25,6 +27,7 @@ std::set<core::KeyframeId> changed_keyframes(const MapVersion& before, const Map
   return changed;
 }
 
+constexpr int kRounds = 2;                // of bundles, the second with what was found again
 constexpr std::size_t kMaxTogether = 60;  // more make a bundle slow
 
 // Together, or what holds one of them would be as far off as it is itself. Where that is too many,
@@ -45,14 +48,49 @@ MapVersion bundled(MapVersion map, const std::set<core::KeyframeId>& keyframes,
   return map;
 }
 
+// Tracked anew from what its parent shows, the keyframe sees again what was far off while poses
+// were.
+scene::Edit tracked_anew(const MapVersion& map, core::KeyframeId id, const Config& config) {
+  scene::Edit edit;
+  const scene::Keyframe& keyframe = map.at(id);
+  if (!keyframe.odometry) return edit;
+  const core::KeyframeId parent = holder_of(map, keyframe.odometry->parent).keyframe;
+  const auto local = build_local_map(map, parent, config.map.max_neighbours);
+  const track::Tracker tracker(
+      {config.track, config.features, config.optimize, static_cast<std::uint64_t>(config.seed)});
+  const auto found = tracker.track(
+      keyframe.view, local, inverse(map.at(parent).world_from_body) * keyframe.world_from_body);
+  if (!found) return edit;
+  std::set<core::LandmarkId> shown(keyframe.slots.begin(), keyframe.slots.end());
+  for (const auto& match : found->matches) {
+    const core::LandmarkId landmark = local.landmarks[static_cast<std::size_t>(match.first)];
+    const bool is_free = !keyframe.slots[static_cast<std::size_t>(match.second)].is_valid();
+    if (is_free && shown.insert(landmark).second)
+      edit.sightings.push_back({landmark, {id, match.second, {}}});
+  }
+  return edit;
+}
+
+MapVersion seen_again(MapVersion map, const std::set<core::KeyframeId>& keyframes,
+                      const Config& config) {
+  for (const core::KeyframeId id : keyframes)
+    map = apply(std::move(map), tracked_anew(map, id, config));
+  return map;
+}
+
 }  // namespace
 
 MapVersion with_places_parted(const MapVersion& before, MapVersion after, const Config& config) {
   for (const auto& edit : map::part_places(before, after, config.features))
     after = apply(std::move(after), edit);
-  after = bundled(after, changed_keyframes(before, after), config);
-  const scene::Edit poses = correct::solve_poses(after, config.optimize);
-  return apply(std::move(after), poses);
+  const std::set<core::KeyframeId> changed = changed_keyframes(before, after);
+  for (int round = 0; round < kRounds; ++round) {
+    if (round > 0) after = seen_again(std::move(after), changed, config);
+    after = bundled(std::move(after), changed, config);
+    const scene::Edit poses = correct::solve_poses(after, config.optimize);
+    after = apply(std::move(after), poses);
+  }
+  return after;
 }
 
 MapVersion without_loop(const MapVersion& map, core::CandidateId cause, const Config& config) {

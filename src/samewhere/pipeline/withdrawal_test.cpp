@@ -156,7 +156,8 @@ TEST_F(LookAlikeRooms, TrueLoopsThatComeLaterPartThemAgain) {
   EXPECT_EQ(believed.doubted_loops[0].cause, kLie);
   EXPECT_EQ(survivors(believed), survivors(map_));
   EXPECT_EQ(num_seen_in_both_rooms(believed), 0);
-  EXPECT_LT(rmse_m(believed), 1.02 * rmse_m(never));
+  // not the same: what was culled, or made twice, while the lie was believed, stays so
+  EXPECT_LT(rmse_m(believed), 1.15 * rmse_m(never));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ template <class Archive>
 void fields(Archive& archive, Value<Archive, Keyframe>& keyframe) {
   archive(keyframe.id, keyframe.world_from_body, keyframe.odometry,
           keyframe.refined_parent_from_keyframe, keyframe.refined_at,
-          keyframe.culled_parent_from_keyframe);
+          keyframe.culled_parent_from_keyframe, keyframe.log_scale);
 }
 
 template <class Archive>
@@ -68,7 +68,7 @@ void fields(Archive& archive, Value<Archive, Landmark>& landmark) {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, LoopEdge>& loop) {
   archive(loop.query, loop.match, loop.match_from_query, loop.information, loop.cause,
-          loop.closed_at);
+          loop.log_scale, loop.closed_at);
 }
 
 template <class Archive>
@@ -79,7 +79,7 @@ void fields(Archive& archive, Value<Archive, Merge>& merge) {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, core::FramePose>& pose) {
   archive(pose.frame, pose.stamp_s, pose.status, pose.is_measured, pose.reference_keyframe,
-          pose.reference_from_frame, pose.information, pose.num_inliers);
+          pose.reference_from_frame, pose.information, pose.num_inliers, pose.log_scale);
 }
 
 template <class Archive>

@@ -6,6 +6,7 @@
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/scene/observations.hpp>
+#include <samewhere/scene/rescale.hpp>
 #include <samewhere/scene/withdraw.hpp>
 
 namespace samewhere::scene {
@@ -105,7 +106,28 @@ void cull(MapVersion& map, core::KeyframeId id) {
   }
 }
 
+// Measured in the lengths of before: moved with the rest.
+void believe(MapVersion& map, const Edit& edit) {
+  map.doubted_loops.insert(map.doubted_loops.end(), edit.doubted_loops.begin(),
+                           edit.doubted_loops.end());
+  for (const auto& loop : edit.loops) {
+    std::erase_if(map.doubted_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
+    map.loops.push_back(loop);
+    map.loops.back().closed_at = map.number;
+  }
+}
+
+void rescale_around(MapVersion& map, const std::vector<PoseChange>& changes) {
+  if (std::all_of(changes.begin(), changes.end(),
+                  [](const PoseChange& change) { return change.scale == 1.0; }))
+    return;
+  std::vector<double> factors(map.keyframes.size(), 1.0);
+  for (const auto& change : changes) factors[change.keyframe.index()] = change.scale;
+  rescale(map, std::move(factors));
+}
+
 void move(MapVersion& map, const Edit& edit) {
+  rescale_around(map, edit.pose_changes);
   for (const auto& change : edit.pose_changes) {
     Keyframe& keyframe = map.keyframes.edit(change.keyframe.index());
     core::require(is_live(keyframe), "a culled keyframe moves with its parent");
@@ -136,18 +158,12 @@ MapVersion apply(MapVersion map, const Edit& edit) {
     map.landmarks.push_back(landmark);
   }
   for (const auto& sighting : edit.sightings) see_again(map, sighting);
+  believe(map, edit);
   move(map, edit);
   for (const auto& removed : edit.removed_observations) forget(map, removed);
   for (const auto& made : edit.merges) merge(map, made);
   for (const auto& id : edit.culled_landmarks) cull(map, id);
   for (const auto& id : edit.culled_keyframes) cull(map, id);
-  map.doubted_loops.insert(map.doubted_loops.end(), edit.doubted_loops.begin(),
-                           edit.doubted_loops.end());
-  for (const auto& loop : edit.loops) {
-    std::erase_if(map.doubted_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
-    map.loops.push_back(loop);
-    map.loops.back().closed_at = map.number;
-  }
   ++map.number;
   return map;
 }
@@ -180,6 +196,25 @@ core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id) {
   return map.at(holder.keyframe).world_from_body * holder.holder_from_keyframe;
 }
 
+core::Rigid3 reference_from_frame(const MapVersion& map, const core::FramePose& pose) {
+  core::Rigid3 reference_from_frame = pose.reference_from_frame;
+  const double log_factor = map.at(pose.reference_keyframe).log_scale - pose.log_scale;
+  if (log_factor != 0.0) reference_from_frame.translation *= std::exp(log_factor);
+  return reference_from_frame;
+}
+
+core::Rigid3 world_from_frame(const MapVersion& map, const core::FramePose& pose) {
+  return world_from_body(map, pose.reference_keyframe) * reference_from_frame(map, pose);
+}
+
+bool is_without_depth(const MapVersion& map) {
+  core::require(!map.keyframes.empty(), "the first keyframe says whether its camera has depth");
+  const auto& features = map.keyframes[0].view.features;
+  if (!features) return false;  // a graph of poses alone
+  return std::none_of(features->depth_m.begin(), features->depth_m.end(),
+                      [](float d) { return d > 0.0F; });
+}
+
 const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id) {
   while (map.at(id).merged_into.is_valid()) id = map.at(id).merged_into;
   return map.at(id);
@@ -204,10 +239,13 @@ std::vector<core::Rigid3> odometry_poses(const MapVersion& map) {
   std::vector<core::Rigid3> world_from_body;
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
     const Keyframe& keyframe = map.keyframes[i];
-    world_from_body.push_back(keyframe.odometry
-                                  ? world_from_body[keyframe.odometry->parent.index()] *
-                                        parent_from_keyframe(keyframe)
-                                  : keyframe.world_from_body);
+    if (!keyframe.odometry) {
+      world_from_body.push_back(keyframe.world_from_body);
+      continue;
+    }
+    core::Rigid3 edge = parent_from_keyframe(keyframe);
+    edge.translation *= std::exp(-map.at(keyframe.odometry->parent).log_scale);
+    world_from_body.push_back(world_from_body[keyframe.odometry->parent.index()] * edge);
   }
   return world_from_body;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <samewhere/core/frame_pose.hpp>
 #include <samewhere/core/ids.hpp>
 #include <samewhere/core/rigid3.hpp>
 #include <samewhere/features/features.hpp>
@@ -63,6 +64,9 @@ struct Keyframe {
   std::uint64_t refined_at = 0;  // MapVersion::number then
   // Set: culled. It shows no landmark any more; its pose hangs on its odometry parent.
   std::optional<core::Rigid3> culled_parent_from_keyframe;
+  // By what lengths around it were stretched since it and its parent were measured to be of one
+  // scale, as a logarithm: see rescale.hpp.
+  double log_scale = 0.0;
 };
 
 inline bool is_live(const Keyframe& keyframe) { return !keyframe.culled_parent_from_keyframe; }
@@ -74,6 +78,7 @@ struct LoopEdge {
   core::Rigid3 match_from_query;
   core::Matrix6d information = core::Matrix6d::Identity();
   core::CandidateId cause;
+  double log_scale = 0.0;       // what is 1 long at the query is exp(log_scale) long at the match
   std::uint64_t closed_at = 0;  // MapVersion::number then; set by apply()
 };
 
@@ -115,10 +120,12 @@ struct Sighting {
   Observation observation;
 };
 
-// The world moved under a keyframe: world_from_body becomes new_from_old * world_from_body.
+// The world moved under a keyframe: world_from_body becomes new_from_old * world_from_body, and all
+// that was measured from there becomes `scale` times as long.
 struct PoseChange {
   core::KeyframeId keyframe;
   core::Rigid3 new_from_old;
+  double scale = 1.0;
 };
 
 // A bundle found where the keyframe is relative to its odometry parent.
@@ -176,6 +183,15 @@ core::Rigid3 parent_from_keyframe(const Keyframe& keyframe);
 
 // Pose of a keyframe, culled or not.
 core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id);
+
+// Pose of a frame relative to its reference keyframe, in the map's lengths of today.
+core::Rigid3 reference_from_frame(const MapVersion& map, const core::FramePose& pose);
+// In the world, if the pose was measured.
+core::Rigid3 world_from_frame(const MapVersion& map, const core::FramePose& pose);
+
+// Whether lengths come from motion, so that their scale creeps: the first keyframe has no depth of
+// its own.
+bool is_without_depth(const MapVersion& map);
 
 // Where a keyframe hangs: itself, or the first of its odometry ancestors that is not culled.
 struct Holder {

@@ -42,7 +42,7 @@ inline bool is_same(const Keyframe& a, const Keyframe& b) {
   return a.id == b.id && is_same(a.world_from_body, b.world_from_body) &&
          is_same(a.odometry, b.odometry) && is_same(a.view, b.view) && a.slots == b.slots &&
          is_same(a.refined_parent_from_keyframe, b.refined_parent_from_keyframe) &&
-         a.refined_at == b.refined_at &&
+         a.refined_at == b.refined_at && a.log_scale == b.log_scale &&
          is_same(a.culled_parent_from_keyframe, b.culled_parent_from_keyframe);
 }
 
@@ -63,7 +63,7 @@ inline bool is_same(const Landmark& a, const Landmark& b) {
 inline bool is_same(const LoopEdge& a, const LoopEdge& b) {
   return a.query == b.query && a.match == b.match &&
          is_same(a.match_from_query, b.match_from_query) && a.information == b.information &&
-         a.cause == b.cause && a.closed_at == b.closed_at;
+         a.cause == b.cause && a.log_scale == b.log_scale && a.closed_at == b.closed_at;
 }
 
 inline bool is_same(const Merge& a, const Merge& b) {

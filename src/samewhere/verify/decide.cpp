@@ -113,6 +113,8 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   // without required geometry a pose is used if it is good, and the loop is counted without one if
   // not
   if (!refused) loop.match_from_query = evidence.geometry->match_from_query;
+  // with depth it is 1, not about 1
+  loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;
   return loop;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/features/match_projected.hpp>
@@ -74,8 +75,13 @@ class PoseMeasurement {
     evidence.num_inliers = fine.num_inliers;
     evidence.reprojection_rmse_px = fine.reprojection_rmse_px;
     evidence.spread_ratio = spread_ratio(query_, inlier_features(again, fine));
-    const core::Rigid3 query_from_match = query_.rig->body_from_camera[0] * fine.camera_from_world;
-    evidence.match_from_query = core::Sim3::from_rigid(inverse(query_from_match));
+    const std::optional<double> scale =
+        settings_.has_one_scale ? std::optional(1.0) : scale_of(again, fine);
+    if (!scale) return evidence;
+    const core::Rigid3 match_from_query =
+        inverse(query_.rig->body_from_camera[0] * fine.camera_from_world);
+    evidence.match_from_query =
+        core::Sim3{*scale, match_from_query.rotation, match_from_query.translation};
     return evidence;
   }
 
@@ -132,6 +138,21 @@ class PoseMeasurement {
                            settings_.verify.refine_radius_px, settings_.features);
   }
 
+  // How long at the match is what is 1 long at the query; nothing if too few inliers have a depth
+  // at both.
+  std::optional<double> scale_of(const std::vector<Match>& matches,
+                                 const optimize::MotionResult& motion) const {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      const double depth = query_.features->depth_m[static_cast<std::size_t>(matches[i].second)];
+      if (!motion.is_inlier[i] || depth <= 0.0) continue;
+      const auto& point = *points_[static_cast<std::size_t>(matches[i].first)];
+      ratios.push_back((motion.camera_from_world * point).z() / depth);
+    }
+    if (static_cast<int>(ratios.size()) < kMinPointsForPose) return std::nullopt;
+    return core::median(std::move(ratios));
+  }
+
   static std::vector<int> inlier_features(const std::vector<Match>& matches,
                                           const optimize::MotionResult& motion) {
     std::vector<int> inliers;
@@ -150,6 +171,10 @@ class PoseMeasurement {
 bool has_depth(const View& view) {
   const auto& depth_m = view.features->depth_m;
   return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
+}
+
+core::Rigid3 without_scale(const core::Sim3& a_from_b) {
+  return {a_from_b.rotation, a_from_b.translation};
 }
 
 std::vector<Match> swapped(std::vector<Match> matches) {
@@ -172,12 +197,14 @@ GeometryEvidence measure_both_ways(const View& query, const View& match,
     evidence.disagreement_rad = std::numeric_limits<double>::infinity();
     return evidence;
   }
-  const core::Rigid3 forth = rigid_part(*evidence.match_from_query);
-  const core::Rigid3 forth_again = inverse(rigid_part(*back.match_from_query));
-  const core::Rigid3 apart = inverse(forth) * forth_again;
+  const core::Sim3 forth = *evidence.match_from_query;
+  const core::Sim3 forth_again = inverse(*back.match_from_query);
+  const core::Rigid3 apart = inverse(without_scale(forth)) * without_scale(forth_again);
   evidence.disagreement_m = apart.translation.norm();
   evidence.disagreement_rad = core::angle_rad(apart.rotation);
-  evidence.match_from_query = core::Sim3::from_rigid(interpolate(forth, forth_again, 0.5));
+  const core::Rigid3 mean = interpolate(without_scale(forth), without_scale(forth_again), 0.5);
+  evidence.match_from_query =
+      core::Sim3{std::sqrt(forth.scale * forth_again.scale), mean.rotation, mean.translation};
   return evidence;
 }
 

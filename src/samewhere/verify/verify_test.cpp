@@ -1,3 +1,6 @@
+#include <memory>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include <samewhere/features/test_world.hpp>
@@ -37,6 +40,34 @@ TEST(MeasureGeometry, WithoutDepthItCountsEpipolarInliersAndHasNoPose) {
                        features::test_view(world, 0, {}, 0.3, false), {});
   EXPECT_FALSE(evidence.match_from_query);
   EXPECT_GT(evidence.num_inliers, 100);
+}
+
+// What a camera without depth sees, with the depths that a map of this scale has for it.
+features::View view_of_scale(const features::TestWorld& world, int frame, const core::Rigid3& pose,
+                             double scale) {
+  features::View view = features::test_view(world, frame, pose, 0.3, false);
+  const features::View truth = features::test_view(world, frame, pose, 0.3, true);
+  auto features = std::make_shared<features::Features>(*view.features);
+  for (std::size_t i = 0; i < features->depth_m.size(); ++i)
+    features->depth_m[i] = static_cast<float>(scale) * truth.features->depth_m[i];
+  view.features = std::move(features);
+  return view;
+}
+
+TEST(MeasureGeometry, BetweenViewsOfTwoScalesItFindsHowMuchLongerOneIs) {
+  const features::TestWorld world = features::test_world(1);
+  MeasureSettings settings;
+  settings.has_one_scale = false;
+  const auto evidence = measure_geometry(candidate(9, 0), view_of_scale(world, 9, kMoved, 0.5),
+                                         view_of_scale(world, 0, core::Rigid3{}, 1.5), settings);
+  ASSERT_TRUE(evidence.match_from_query);
+  EXPECT_NEAR(evidence.match_from_query->scale, 3.0, 0.01);
+  EXPECT_LT((evidence.match_from_query->translation - 1.5 * kMoved.translation).norm(), 0.01);
+  EXPECT_LT(core::angle_rad(kMoved.rotation.conjugate() * evidence.match_from_query->rotation),
+            0.005);
+  EXPECT_GT(evidence.num_inliers, 100);
+  ASSERT_TRUE(evidence.disagreement_m);
+  EXPECT_LT(*evidence.disagreement_m, 0.03);
 }
 
 TEST(MeasureGeometry, TwoPlacesHaveNothingInCommon) {
@@ -176,7 +207,7 @@ scene::MapVersion corridor(int count) {
 
 TEST(MeasureOdometry, ALoopThatAgreesWithOdometryMovesNothing) {
   const auto evidence = measure_odometry(corridor(10), core::KeyframeId(9), core::KeyframeId(0),
-                                         {Eigen::Quaterniond::Identity(), {0, 0, 9}}, {});
+                                         {Eigen::Quaterniond::Identity(), {0, 0, 9}}, 0.01, {});
   EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
   EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
 }
@@ -188,7 +219,7 @@ TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALon
     match_from_query.translation.z() = steps - 1.0;  // one metre short of what odometry says
     return measure_odometry(corridor(steps + 1),
                             core::KeyframeId(static_cast<std::uint64_t>(steps)),
-                            core::KeyframeId(0), match_from_query, {});
+                            core::KeyframeId(0), match_from_query, 0.01, {});
   };
   EXPECT_NEAR(after(5).correction_m, 1.0, 1e-9);
   EXPECT_GT(after(5).mahalanobis_squared, Config{}.max_odometry_chi_square);
@@ -201,7 +232,8 @@ TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
   edit.keyframes.resize(1);
   edit.keyframes[0].id = core::KeyframeId(3);
   map = apply(map, edit);
-  const auto evidence = measure_odometry(map, core::KeyframeId(3), core::KeyframeId(0), {}, {});
+  const auto evidence =
+      measure_odometry(map, core::KeyframeId(3), core::KeyframeId(0), {}, 0.01, {});
   EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
 }
 
