@@ -92,7 +92,8 @@ class RandomEdits {
     for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
       const Keyframe& keyframe = map.keyframes[i];
       if (is_live(keyframe) && random_.index(4) == 0)
-        edit.pose_changes.push_back({keyframe.id, random_pose(random_)});
+        edit.pose_changes.push_back({keyframe.id, random_pose(random_),
+                                     random_.uniform() < 0.5 ? 1.0 : 0.5 + random_.uniform()});
       if (keyframe.odometry && random_.index(4) == 0)
         edit.refinements.push_back({keyframe.id, random_pose(random_)});
     }
