@@ -21,6 +21,21 @@ struct Config {
   double loop_scale_sigma = 0.05;
 };
 
+// Of a camera without depth.
+inline void visit_scale_fields(Config& config, core::FieldVisitor& visit) {
+  visit(
+      "odometry_scale_sigma", config.odometry_scale_sigma,
+      {.help = "of a camera without depth, how far its scale creeps from one keyframe to the next, "
+               "as a share",
+       .min = 1e-6,
+       .max = 1.0});
+  visit("loop_scale_sigma", config.loop_scale_sigma,
+        {.help = "of a camera without depth, error of the scale between both ends of a loop, as a "
+                 "share",
+         .min = 1e-6,
+         .max = 1.0});
+}
+
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("motion_rounds", config.motion_rounds,
         {.help = "times that motion-only optimisation sorts inliers from outliers anew",
@@ -58,17 +73,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "iterations of the graph per round of graduated non-convexity",
          .min = 1,
          .max = 100});
-  visit(
-      "odometry_scale_sigma", config.odometry_scale_sigma,
-      {.help = "of a camera without depth, how far its scale creeps from one keyframe to the next, "
-               "as a share",
-       .min = 1e-6,
-       .max = 1.0});
-  visit("loop_scale_sigma", config.loop_scale_sigma,
-        {.help = "of a camera without depth, error of the scale between both ends of a loop, as a "
-                 "share",
-         .min = 1e-6,
-         .max = 1.0});
+  visit_scale_fields(config, visit);
 }
 
 }  // namespace samewhere::optimize

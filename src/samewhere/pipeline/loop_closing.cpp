@@ -28,9 +28,12 @@ class Places {
     MapKnowledge knowledge;
     knowledge.measure_odometry = [this, &config](const core::Candidate& candidate,
                                                  const core::Sim3& match_from_query) {
+      scene::LoopEdge claim;
+      claim.query = at(candidate.query);
+      claim.match = at(candidate.match);
+      claim.match_from_query = rigid_part(match_from_query);
       return std::optional(verify::measure_odometry(
-          map_, at(candidate.query), at(candidate.match), rigid_part(match_from_query),
-          config.optimize.odometry_scale_sigma, config.verify));
+          map_, claim, config.optimize.odometry_scale_sigma, config.verify));
     };
     if (is_without_depth_)
       knowledge.view_of = [this](core::FrameId frame) {

@@ -73,8 +73,10 @@ scene::Edit tracked_anew(const MapVersion& map, core::KeyframeId id, const Confi
 
 MapVersion seen_again(MapVersion map, const std::set<core::KeyframeId>& keyframes,
                       const Config& config) {
-  for (const core::KeyframeId id : keyframes)
-    map = apply(std::move(map), tracked_anew(map, id, config));
+  for (const core::KeyframeId id : keyframes) {
+    const scene::Edit edit = tracked_anew(map, id, config);
+    map = apply(std::move(map), edit);
+  }
   return map;
 }
 

@@ -41,9 +41,9 @@ std::optional<Chain> odometry_between(const scene::MapVersion& map, core::Keyfra
 
 // Of the query's position in the match, if the scale crept by a share of 1 at each keyframe passed.
 Eigen::Matrix3d covariance_of_creep(const scene::MapVersion& map, const Chain& chain,
-                                    core::KeyframeId query, core::KeyframeId match) {
-  const core::Rigid3 match_from_world = inverse(world_from_body(map, match));
-  const Eigen::Vector3d end = world_from_body(map, query).translation;
+                                    const scene::LoopEdge& claim) {
+  const core::Rigid3 match_from_world = inverse(world_from_body(map, claim.match));
+  const Eigen::Vector3d end = world_from_body(map, claim.query).translation;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const auto& id : chain.passed) {
     const Eigen::Vector3d rest =
@@ -55,24 +55,23 @@ Eigen::Matrix3d covariance_of_creep(const scene::MapVersion& map, const Chain& c
 
 }  // namespace
 
-core::OdometryEvidence measure_odometry(const scene::MapVersion& map, core::KeyframeId query,
-                                        core::KeyframeId match,
-                                        const core::Rigid3& match_from_query, double scale_sigma,
-                                        const Config& config) {
-  const core::Rigid3 known = inverse(world_from_body(map, match)) * world_from_body(map, query);
+core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                                        double scale_sigma, const Config& config) {
+  const core::Rigid3 known =
+      inverse(world_from_body(map, claim.match)) * world_from_body(map, claim.query);
   core::Vector6d correction;
-  correction << match_from_query.translation - known.translation,
-      core::log_so3(known.rotation.conjugate() * match_from_query.rotation);
+  correction << claim.match_from_query.translation - known.translation,
+      core::log_so3(known.rotation.conjugate() * claim.match_from_query.rotation);
 
   core::OdometryEvidence evidence;
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
-  if (const auto chain = odometry_between(map, query, match)) {
+  if (const auto chain = odometry_between(map, claim.query, claim.match)) {
     core::Matrix6d covariance =
         chain->match_from_query.covariance + loop_information(config).inverse();
     if (is_without_depth(map))
       covariance.topLeftCorner<3, 3>() +=
-          scale_sigma * scale_sigma * covariance_of_creep(map, *chain, query, match);
+          scale_sigma * scale_sigma * covariance_of_creep(map, *chain, claim);
     evidence.mahalanobis_squared = correction.dot(covariance.llt().solve(correction));
   }
   return evidence;

@@ -187,7 +187,7 @@ TEST(Score, InliersComeFirstAndSimilarityBreaksTies) {
 }
 
 // A straight corridor of keyframes one metre apart.
-scene::MapVersion corridor(int count) {
+scene::MapVersion corridor(int count, const features::View& view = features::View{}) {
   scene::Edit edit;
   const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0, 0, 1}};
   core::Rigid3 pose;
@@ -195,6 +195,8 @@ scene::MapVersion corridor(int count) {
     scene::Keyframe keyframe;
     keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
     keyframe.world_from_body = pose;
+    keyframe.view = view;
+    if (view.features) keyframe.slots.resize(static_cast<std::size_t>(view.features->size()));
     if (i > 0) {
       keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), step,
                            400.0 * core::Matrix6d::Identity()};
@@ -205,9 +207,17 @@ scene::MapVersion corridor(int count) {
   return apply(scene::MapVersion{}, edit);
 }
 
+scene::LoopEdge claim(int query, int match, const core::Rigid3& match_from_query) {
+  scene::LoopEdge loop;
+  loop.query = core::KeyframeId(static_cast<std::uint64_t>(query));
+  loop.match = core::KeyframeId(static_cast<std::uint64_t>(match));
+  loop.match_from_query = match_from_query;
+  return loop;
+}
+
 TEST(MeasureOdometry, ALoopThatAgreesWithOdometryMovesNothing) {
-  const auto evidence = measure_odometry(corridor(10), core::KeyframeId(9), core::KeyframeId(0),
-                                         {Eigen::Quaterniond::Identity(), {0, 0, 9}}, 0.01, {});
+  const auto evidence = measure_odometry(
+      corridor(10), claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}), 0.01, {});
   EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
   EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
 }
@@ -217,13 +227,24 @@ TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALon
   const auto after = [&](int steps) {
     core::Rigid3 match_from_query = beside;
     match_from_query.translation.z() = steps - 1.0;  // one metre short of what odometry says
-    return measure_odometry(corridor(steps + 1),
-                            core::KeyframeId(static_cast<std::uint64_t>(steps)),
-                            core::KeyframeId(0), match_from_query, 0.01, {});
+    return measure_odometry(corridor(steps + 1), claim(steps, 0, match_from_query), 0.01, {});
   };
   EXPECT_NEAR(after(5).correction_m, 1.0, 1e-9);
   EXPECT_GT(after(5).mahalanobis_squared, Config{}.max_odometry_chi_square);
   EXPECT_LT(after(60).mahalanobis_squared, after(5).mahalanobis_squared / 5.0);
+}
+
+TEST(MeasureOdometry, WithoutDepthTheWayMayBeLongerOrShorterThanItSeemedButNoMoreBent) {
+  const features::View without_depth =
+      features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
+  const auto squared = [&](const features::View& view, const Eigen::Vector3d& error) {
+    const core::Rigid3 seen{Eigen::Quaterniond::Identity(), error + Eigen::Vector3d(0, 0, 20)};
+    return measure_odometry(corridor(21, view), claim(20, 0, seen), 0.02, {}).mahalanobis_squared;
+  };
+  const Eigen::Vector3d along(0.0, 0.0, 2.0);
+  const Eigen::Vector3d aside(2.0, 0.0, 0.0);
+  EXPECT_LT(squared(without_depth, along), 0.8 * squared({}, along));
+  EXPECT_NEAR(squared(without_depth, aside), squared({}, aside), 1e-6);
 }
 
 TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
@@ -232,8 +253,7 @@ TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
   edit.keyframes.resize(1);
   edit.keyframes[0].id = core::KeyframeId(3);
   map = apply(map, edit);
-  const auto evidence =
-      measure_odometry(map, core::KeyframeId(3), core::KeyframeId(0), {}, 0.01, {});
+  const auto evidence = measure_odometry(map, claim(3, 0, {}), 0.01, {});
   EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
 }
 
