@@ -33,7 +33,7 @@ Rigid3 inverse(const Rigid3& a_from_b);
 Sim3 operator*(const Sim3& a_from_b, const Sim3& b_from_c);
 Eigen::Vector3d operator*(const Sim3& a_from_b, const Eigen::Vector3d& x_in_b);
 Sim3 inverse(const Sim3& a_from_b);
-// The rigid part of a transform whose scale is meant to be 1.
+// Its rotation and translation; what is lost is the scale.
 Rigid3 rigid_part(const Sim3& a_from_b);
 
 // Tangent vectors are [translation (m); rotation (rad)]. exp_r3so3 is the retraction used by all

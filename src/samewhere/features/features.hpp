@@ -50,4 +50,7 @@ struct View {
 // Where feature i is in the camera's frame, metres. Nothing without depth or calibration.
 std::optional<Eigen::Vector3d> point_in_camera(const View& view, int feature);
 
+// Whether the depth of any feature is known.
+bool has_depth(const View& view);
+
 }  // namespace samewhere::features

@@ -15,11 +15,6 @@ using core::KeyframeId;
 using core::LandmarkId;
 using scene::MapVersion;
 
-bool has_depth(const features::View& view) {
-  const auto& depth_m = view.features->depth_m;
-  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
-}
-
 std::set<KeyframeId> free_keyframes(const MapVersion& map, KeyframeId keyframe,
                                     const Config& config) {
   const int max_free = has_depth(map.at(keyframe).view) ? config.bundle_keyframes

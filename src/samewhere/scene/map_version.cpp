@@ -209,10 +209,8 @@ core::Rigid3 world_from_frame(const MapVersion& map, const core::FramePose& pose
 
 bool is_without_depth(const MapVersion& map) {
   core::require(!map.keyframes.empty(), "the first keyframe says whether its camera has depth");
-  const auto& features = map.keyframes[0].view.features;
-  if (!features) return false;  // a graph of poses alone
-  return std::none_of(features->depth_m.begin(), features->depth_m.end(),
-                      [](float d) { return d > 0.0F; });
+  const features::View& first = map.keyframes[0].view;
+  return first.features && !has_depth(first);  // without features: a graph of poses alone
 }
 
 const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id) {

@@ -168,15 +168,6 @@ class PoseMeasurement {
   std::vector<std::optional<Eigen::Vector3d>> points_;
 };
 
-bool has_depth(const View& view) {
-  const auto& depth_m = view.features->depth_m;
-  return std::any_of(depth_m.begin(), depth_m.end(), [](float d) { return d > 0.0F; });
-}
-
-core::Rigid3 without_scale(const core::Sim3& a_from_b) {
-  return {a_from_b.rotation, a_from_b.translation};
-}
-
 std::vector<Match> swapped(std::vector<Match> matches) {
   for (auto& match : matches) std::swap(match.first, match.second);
   return matches;
@@ -199,10 +190,10 @@ GeometryEvidence measure_both_ways(const View& query, const View& match,
   }
   const core::Sim3 forth = *evidence.match_from_query;
   const core::Sim3 forth_again = inverse(*back.match_from_query);
-  const core::Rigid3 apart = inverse(without_scale(forth)) * without_scale(forth_again);
+  const core::Rigid3 apart = inverse(rigid_part(forth)) * rigid_part(forth_again);
   evidence.disagreement_m = apart.translation.norm();
   evidence.disagreement_rad = core::angle_rad(apart.rotation);
-  const core::Rigid3 mean = interpolate(without_scale(forth), without_scale(forth_again), 0.5);
+  const core::Rigid3 mean = interpolate(rigid_part(forth), rigid_part(forth_again), 0.5);
   evidence.match_from_query =
       core::Sim3{std::sqrt(forth.scale * forth_again.scale), mean.rotation, mean.translation};
   return evidence;
