@@ -26,7 +26,7 @@ optimize::PoseEdge odometry_edge(const MapVersion& map, const scene::Keyframe& k
   const core::KeyframeId parent = keyframe.odometry->parent;
   return {static_cast<int>(parent.index()),
           static_cast<int>(keyframe.id.index()),
-          parent_from_keyframe(keyframe),
+          settled_parent_from_keyframe(keyframe),
           keyframe.odometry->information,
           false,
           map.at(parent).log_scale - keyframe.log_scale,

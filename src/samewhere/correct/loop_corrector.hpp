@@ -30,7 +30,7 @@ struct Closing {
   std::vector<BentLoop> withdrawn;        // believed until now
 };
 
-// The edit that adds the loop edge and moves every keyframe to where odometry, refined by bundles,
+// The edit that adds the loop edge and moves every keyframe to where odometry, bettered by bundles,
 // and all loops fit best. The first keyframe stays; culled ones move with those that they hang on.
 // A loop that the pose graph does not believe (optimize/) is kept as a doubted one, and asked again
 // with every new loop: of two that contradict each other, nobody knows which one lies until a third

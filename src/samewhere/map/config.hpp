@@ -21,6 +21,11 @@ struct Config {
   int bundle_keyframes_without_depth = 20;
   int bundle_fixed_keyframes = 16;
   int bundle_observations = 8000;
+  int full_bundle_observations = 400;
+  int full_bundle_observations_without_depth = 100;
+  int full_bundle_max_observations = 300000;
+  int full_bundle_after_keyframes = 5;
+  int full_bundle_pace = 4000;
   int cull_after_keyframes = 3;
   double min_found_ratio = 0.25;
   double redundant_ratio = 0.9;
@@ -81,6 +86,32 @@ inline void visit_landmark_fields(Config& config, core::FieldVisitor& visit) {
          .max = 50.0});
 }
 
+// How all of the map is bettered when a loop has moved it.
+inline void visit_full_bundle_fields(Config& config, core::FieldVisitor& visit) {
+  visit("full_bundle_observations", config.full_bundle_observations,
+        {.help = "observations of each keyframe in a bundle of the whole map, about",
+         .min = 20,
+         .max = 10000});
+  visit(
+      "full_bundle_observations_without_depth", config.full_bundle_observations_without_depth,
+      {.help = "full_bundle_observations of a map whose depths come from motion: only what is seen "
+               "long tells lengths",
+       .min = 20,
+       .max = 10000});
+  visit("full_bundle_max_observations", config.full_bundle_max_observations,
+        {.help = "a map that would have more is not bundled as a whole; 0: none is",
+         .min = 0,
+         .max = 10000000});
+  visit("full_bundle_after_keyframes", config.full_bundle_after_keyframes,
+        {.help = "keyframes after the last loop until the whole map is bundled",
+         .min = 0,
+         .max = 10000});
+  visit("full_bundle_pace", config.full_bundle_pace,
+        {.help = "the result counts one keyframe later for each so many observations",
+         .min = 1,
+         .max = 10000000});
+}
+
 // How both are bettered, and which go again.
 inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
   visit("bundle_keyframes", config.bundle_keyframes,
@@ -137,6 +168,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit_keyframe_fields(config, visit);
   visit_landmark_fields(config, visit);
   visit_refinement_fields(config, visit);
+  visit_full_bundle_fields(config, visit);
   visit_schedule_fields(config, visit);
 }
 

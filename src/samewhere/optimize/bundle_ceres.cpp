@@ -19,8 +19,9 @@ class ReprojectionCost : public ceres::SizedCostFunction<Size, kPoseSize, kPoint
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const BundleResidual r = bundle_residual(camera_, from_block(blocks[0]),
                                              Eigen::Map<const Eigen::Vector3d>(blocks[1]), seen_);
-    if (r.reprojection.size == 0) return false;  // a step that takes a point behind a camera
-    Eigen::Map<Eigen::Matrix<double, Size, 1>>{residuals} = r.reprojection.value.head<Size>();
+    Eigen::Map<Eigen::Matrix<double, Size, 1>> residual{residuals};
+    residual = r.reprojection.value.head<Size>();
+    if (r.reprojection.size == 0) residual(0) = kErrorBehind;
     if (jacobians == nullptr) return true;
     write_by_tangent<Size>(r.by_pose.topRows<Size>(), jacobians[0]);
     if (jacobians[1] != nullptr) {

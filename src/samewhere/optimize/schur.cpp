@@ -28,8 +28,9 @@ struct Loss {
 };
 
 Loss loss_of(const Reprojection& r, bool is_robust) {
-  const double square = r.value.squaredNorm();
-  const double threshold = kChiSquare95[r.size];
+  const bool is_behind = r.size == 0;
+  const double square = is_behind ? kErrorBehind * kErrorBehind : r.value.squaredNorm();
+  const double threshold = kChiSquare95[is_behind ? 2 : r.size];
   if (!is_robust || square <= threshold) return {square, 1.0};
   const double ratio = std::sqrt(threshold / square);
   return {2.0 * square * ratio - threshold, ratio};
@@ -78,8 +79,8 @@ class Schur {
   void step_points();
   double predicted_decrease() const;
   BundleState moved() const;
-  // Sum of the losses, a half of it as Ceres counts; nothing if a point came behind a camera.
-  std::optional<double> cost(const BundleState& state) const;
+  // Sum of the losses, a half of it as Ceres counts.
+  double cost(const BundleState& state) const;
 
   BundleState& state_;
   bool is_robust_;
@@ -236,7 +237,7 @@ BundleState Schur::moved() const {
   return moved;
 }
 
-std::optional<double> Schur::cost(const BundleState& state) const {
+double Schur::cost(const BundleState& state) const {
   double sum = 0.0;
   for (const auto& point : points_) {
     for (std::size_t i = point.begin; i < point.end; ++i) {
@@ -246,7 +247,6 @@ std::optional<double> Schur::cost(const BundleState& state) const {
           reproject(from.intrinsics, from.baseline_m,
                     state.camera_from_world[camera] * state.points_in_world[point.point],
                     state.problem->observations[terms_[i].observation].seen);
-      if (r.size == 0) return std::nullopt;
       sum += loss_of(r, is_robust_).value;
     }
   }
@@ -254,8 +254,8 @@ std::optional<double> Schur::cost(const BundleState& state) const {
 }
 
 int Schur::minimise(int max_iterations) {
-  std::optional<double> current = cost(state_);
-  if (!current || points_.empty()) return 0;
+  if (points_.empty()) return 0;
+  double current = cost(state_);
   linearise();
   double growth = 2.0;
   int iteration = 0;
@@ -267,17 +267,17 @@ int Schur::minimise(int max_iterations) {
       candidate = moved();
       next = cost(candidate);
     }
-    if (!next || !(*next <= *current)) {
+    if (!next || !(*next <= current)) {
       damping_ *= growth;
       growth *= 2.0;
       continue;
     }
-    const double gain = (*current - *next) / std::max(predicted_decrease(), 1e-300);
+    const double gain = (current - *next) / std::max(predicted_decrease(), 1e-300);
     damping_ *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3));
     growth = 2.0;
-    const bool is_done = *current - *next <= kFunctionTolerance * *current;
+    const bool is_done = current - *next <= kFunctionTolerance * current;
     state_ = std::move(candidate);
-    current = next;
+    current = *next;
     if (is_done) break;
     linearise();
   }

@@ -15,6 +15,11 @@ struct BundleState {
   std::vector<bool> is_used;                     // one per observation
 };
 
+// What a point behind the camera that sees it counts for, standard deviations: more than any that
+// is still believed. A step that takes a few far ones there must not be refused for their sake;
+// they are out when it is over.
+inline constexpr double kErrorBehind = 100.0;
+
 // Moves free cameras and points towards the least sum of squared reprojection errors, or of their
 // Huber losses (`is_robust`); returns the number of iterations. Points that no used observation
 // sees stay. Levenberg and Marquardt with Schur elimination of the points, in blocks of 6 and 3

@@ -107,6 +107,18 @@ TEST(Disturbance, InTwoSecondsOfDarkThereIsNoPoseAndThenThereIsARightOneAgain) {
   EXPECT_EQ(outcome.num_right, outcome.num_measured);
 }
 
+TEST(Disturbance, WithDepthAMapThatIsLostBeforeItIsLargeIsGivenUpForANewOne) {
+  const Outcome outcome = outcome_of([](core::Frame frame) {
+    if (is_between(frame, 3, 80)) {
+      frame.images[0] = cv::Mat::zeros(frame.images[0].size(), frame.images[0].type());
+      frame.depth_m->setTo(0.0);
+    }
+    return std::optional(frame);
+  });
+  for (std::size_t i = 0; i <= 80; ++i) EXPECT_FALSE(outcome.is_measured[i]) << i;
+  for (std::size_t i = 81; i < kNumFrames; ++i) EXPECT_TRUE(outcome.is_measured[i]) << i;
+}
+
 TEST(Disturbance, ALensThatIsHalfCoveredLeavesTheOtherHalf) {
   const Outcome outcome = outcome_of([](core::Frame frame) {
     if (is_between(frame, 50, 79)) {

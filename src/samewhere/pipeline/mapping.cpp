@@ -14,14 +14,19 @@
 
 namespace samewhere::pipeline {
 
-Mapping::Mapping(const Config& config, scene::MapVersion so_far, LoopLink& loops, KeepMap keep_map)
-    : config_(config), loops_(loops), keep_map_(std::move(keep_map)), map_(std::move(so_far)) {}
+Mapping::Mapping(const Config& config, scene::MapVersion so_far, const Asks& asks, KeepMap keep_map)
+    : config_(config),
+      loops_(asks.loops),
+      full_bundles_(config.map, asks.bundling),
+      keep_map_(std::move(keep_map)),
+      map_(std::move(so_far)) {}
 
 void Mapping::take(const ToMapping& message, const MappingLink::Reply& reply) {
   std::visit([&](const auto& kind) { take(kind, reply); }, message);
 }
 
 void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
+  give_up_map();
   apply(map::start_map(map_, message.view, core::Rigid3{}));
   reply({.map = map_, .place = {}});
   ask_for_loops(message.image);
@@ -29,8 +34,7 @@ void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
 }
 
 void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& reply) {
-  hear_loops(config_.map.loop_lag_keyframes - 1);
-  apply(map::give_up(map_));
+  give_up_map();
   apply(map::start_map(map_, message.views));
   connect_newest();
   refine_newest();
@@ -41,6 +45,7 @@ void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& re
 
 void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) {
   const bool were_parted = hear_loops(config_.map.loop_lag_keyframes - 1);
+  if (const auto found = full_bundles_.due(map_)) apply(*found);
   {
     const core::ScopedTimer timer(timings_, "map");
     apply(map::add_keyframe(map_, were_parted
@@ -51,6 +56,7 @@ void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) 
   reply({.map = map_, .place = {}});
   refine_newest();
   ask_for_loops(message.image);
+  full_bundles_.begin(map_);
   add_frames(message.frames);
   keep_map();
   let_old_features_go();
@@ -66,8 +72,15 @@ void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
 
 void Mapping::take(const EndOfInput& message, const MappingLink::Reply& /*reply*/) {
   hear_loops(0);
+  if (const auto found = full_bundles_.last(map_)) apply(*found);
   add_frames(message.frames);
   keep_map();
+}
+
+void Mapping::give_up_map() {
+  hear_loops(config_.map.loop_lag_keyframes - 1);
+  full_bundles_.forget();
+  apply(map::give_up(map_));
 }
 
 void Mapping::connect_newest() {
@@ -125,6 +138,7 @@ bool Mapping::correct(const scene::LoopEdge& heard) {
   } else {
     map_ = with_places_parted(map_, scene::apply(map_, closing.edit), config_);
   }
+  if (!closing.believed.empty()) full_bundles_.note_correction(map_);
   for (const auto& believed : closing.believed)
     for (const auto& edit : map::fuse_across(map_, believed, config_.map, config_.features))
       apply(edit);

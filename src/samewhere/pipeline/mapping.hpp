@@ -6,6 +6,7 @@
 #include <samewhere/core/timing.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/full_bundles.hpp>
 #include <samewhere/pipeline/messages.hpp>
 
 namespace samewhere::pipeline {
@@ -13,8 +14,12 @@ namespace samewhere::pipeline {
 // The second stage: what does a new view add to the map? Owns the map.
 class Mapping {
  public:
-  // The map so far may be empty. `loops` outlives this.
-  Mapping(const Config& config, scene::MapVersion so_far, LoopLink& loops, KeepMap keep_map);
+  // The map so far may be empty. The stages that it asks outlive this.
+  struct Asks {
+    LoopLink& loops;
+    BundleLink& bundling;
+  };
+  Mapping(const Config& config, scene::MapVersion so_far, const Asks& asks, KeepMap keep_map);
 
   // Does what a message of tracking asks for, and goes on to better the map after the answer.
   void take(const ToMapping& message, const MappingLink::Reply& reply);
@@ -31,6 +36,8 @@ class Mapping {
   void take(const FindPlace& message, const MappingLink::Reply& reply);
   void take(const EndOfInput& message, const MappingLink::Reply& reply);
 
+  // What the map showed so far is no longer part of it.
+  void give_up_map();
   // Points between the newest keyframe and its neighbours, landmarks that are one.
   void connect_newest();
   // Better poses and points around the newest keyframe; then what proved to be no good goes.
@@ -56,6 +63,7 @@ class Mapping {
   Config config_;
   core::Timings timings_;
   LoopLink& loops_;
+  FullBundles full_bundles_;
   KeepMap keep_map_;
   scene::MapVersion map_;
   core::PagedMemory feature_memory_;

@@ -11,17 +11,19 @@
 #include <samewhere/core/frame_pose.hpp>
 #include <samewhere/core/ledger.hpp>
 #include <samewhere/core/link.hpp>
+#include <samewhere/map/local_bundle.hpp>
 #include <samewhere/map/mapper.hpp>
 #include <samewhere/scene/map_version.hpp>
 
-// What the three stages of SLAM say to each other. Tracking asks mapping, mapping asks loop
-// closing; nobody else talks.
+// What the stages of SLAM say to each other. Tracking asks mapping, mapping asks loop closing and
+// bundling; nobody else talks.
 
 namespace samewhere::pipeline {
 
 // --- Tracking to mapping. Keyframes get their ids in the order of the messages that bring them.
 
-// The map begins with this view, which has depth. Answered at once.
+// The map begins, or begins anew, with this view, which has depth. What it showed before is given
+// up. Answered at once.
 struct StartMap {
   features::View view;
   cv::Mat image;
@@ -85,8 +87,16 @@ struct LoopAnswer {
   core::Ledger rows;                           // of all candidates that were judged
 };
 
+// --- Mapping to whoever bundles the whole map beside everything else; answered with what it found
+// for that version.
+struct BundleAll {
+  scene::MapVersion map;
+  map::BundleWindow window;
+};
+
 using MappingLink = core::Link<ToMapping, MapAnswer>;
 using LoopLink = core::Link<ToLoopClosing, LoopAnswer>;
+using BundleLink = core::Link<BundleAll, scene::Edit>;
 
 // What came since the map was kept last.
 struct MapNews {

@@ -131,10 +131,13 @@ TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
   const Walk walk = walk_of(config);
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < walk.frames.size(); ++i) positions.push_back(i);
-  for (std::size_t i = 0; i < 15; ++i) positions.push_back(i);  // back at the start at once
+  for (std::size_t i = 0; i < 15; ++i) positions.push_back(i);  // back at the start
   Slam slam(config);
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    slam.feed(with_id(walk.frames[positions[i]], i, 0));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    core::Frame frame = with_id(walk.frames[positions[i]], i, 0);
+    if (i >= walk.frames.size()) frame.stamp_s += 5.0;  // carried, not beamed
+    slam.feed(frame);
+  }
   slam.finish();
   const auto poses = poses_of(slam);
   int num_measured = 0;
@@ -144,6 +147,23 @@ TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
     EXPECT_TRUE(is_right(*poses[i], walk, positions[i])) << "frame " << positions[i] << " again";
   }
   EXPECT_GE(num_measured, 12) << "of 15";
+}
+
+TEST(Relocalisation, NobodyIsFoundWhereHeCannotHaveGot) {
+  const Config config = config_of("twin:office-loop?seed=7", 90);
+  const Walk walk = walk_of(config);
+  Slam slam(config);
+  std::size_t index = 0;
+  for (const auto& frame : walk.frames) slam.feed(with_id(frame, index++, 0));
+  const std::size_t num_before = index;
+  for (std::size_t i = 0; i < 5; ++i) slam.feed(with_id(walk.frames[i], index++, 0));
+  slam.finish();
+  const double way_m = (walk.truth.front().world_from_camera.translation -
+                        walk.truth.back().world_from_camera.translation)
+                           .norm();
+  ASSERT_GT(way_m, 0.5 + config.track.max_speed_m_s * 5.0 / 15.0) << "or he may be back";
+  for (std::size_t i = num_before; i < index; ++i)
+    EXPECT_FALSE(slam.frames()[i].is_measured) << "frame " << i;
 }
 
 TEST(Relocalisation, WithoutDepthWhoIsKidnappedResumesWhereHeWas) {

@@ -31,6 +31,15 @@ std::unique_ptr<LoopLink> link_to(LoopClosing& stage, const Config& config,
       config.threads, config.map.loop_lag_keyframes, hooks.dawdle);
 }
 
+// One full bundle is under way at most.
+std::unique_ptr<BundleLink> link_to(Bundling& stage, const Config& config, const SlamHooks& hooks) {
+  return link_to<BundleAll, scene::Edit>(
+      [&stage](const BundleAll& message, const BundleLink::Reply& reply) {
+        reply(stage.answer(message));
+      },
+      config.threads, 1, hooks.dawdle);
+}
+
 // One keyframe is under way at most.
 std::unique_ptr<MappingLink> link_to(Mapping& stage, const Config& config, const SlamHooks& hooks) {
   return link_to<ToMapping, MapAnswer>(
@@ -63,14 +72,18 @@ geometry::UncertainPose edge_of(const scene::Keyframe& keyframe) {
 Slam::Slam(const Config& config, DepthFrom depth_from, const SlamHooks& hooks)
     : loop_closing_(config),
       loop_link_(link_to(loop_closing_, config, hooks)),
-      mapping_(config, {}, *loop_link_, hooks.keep_map),
+      bundling_(config),
+      bundle_link_(link_to(bundling_, config, hooks)),
+      mapping_(config, {}, {*loop_link_, *bundle_link_}, hooks.keep_map),
       mapping_link_(link_to(mapping_, config, hooks)),
       tracking_(config, depth_from, *mapping_link_) {}
 
 Slam::Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamHooks& hooks)
     : loop_closing_(config, known),
       loop_link_(link_to(loop_closing_, config, hooks)),
-      mapping_(config, known.map, *loop_link_, hooks.keep_map),
+      bundling_(config),
+      bundle_link_(link_to(bundling_, config, hooks)),
+      mapping_(config, known.map, {*loop_link_, *bundle_link_}, hooks.keep_map),
       mapping_link_(link_to(mapping_, config, hooks)),
       tracking_(config, known, use == Use::kLocalize, *mapping_link_) {
   core::require(!known.map.keyframes.empty(), "a known map holds a keyframe");
@@ -89,6 +102,7 @@ void Slam::finish() {
   tracking_.finish();
   mapping_link_->finish();
   loop_link_->finish();
+  bundle_link_->finish();
   ledger_ = loop_closing_.ledger();
   ledger_.insert(ledger_.end(), mapping_.second_thoughts().begin(),
                  mapping_.second_thoughts().end());
@@ -120,12 +134,13 @@ core::Timings Slam::timings() const {
   core::Timings timings = tracking_.timings();
   timings.add(mapping_.timings());
   timings.add(loop_closing_.timings());
+  timings.add(bundling_.timings());
   return timings;
 }
 
 double Slam::processor_ms_beside() const {
   require_finished();
-  return mapping_link_->processor_ms() + loop_link_->processor_ms();
+  return mapping_link_->processor_ms() + loop_link_->processor_ms() + bundle_link_->processor_ms();
 }
 
 void Slam::require_finished() const {

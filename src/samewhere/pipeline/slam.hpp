@@ -19,8 +19,9 @@ struct SlamHooks {
   std::function<void(const ToLoopClosing& question, LoopAnswer& answer)> lie;
 };
 
-// The whole system: frames in, poses, a map and a ledger of judged loops out. Three stages, each of
-// which knows nothing of threads: tracking asks mapping, mapping asks loop closing. Tracking works
+// The whole system: frames in, poses, a map and a ledger of judged loops out. Stages, each of which
+// knows nothing of threads: tracking asks mapping, mapping asks loop closing and, now and then,
+// bundling. Tracking works
 // on the caller's thread; the others on a thread each (`threads`), or on the caller's. When an
 // answer counts is a matter of frames and keyframes, never of time: the results are the same to the
 // bit, however the threads run.
@@ -64,6 +65,8 @@ class Slam {
   // in the order in which they are asked, from the last: each ends before those that it asks
   LoopClosing loop_closing_;
   std::unique_ptr<LoopLink> loop_link_;
+  Bundling bundling_;
+  std::unique_ptr<BundleLink> bundle_link_;
   Mapping mapping_;
   std::unique_ptr<MappingLink> mapping_link_;
   Tracking tracking_;

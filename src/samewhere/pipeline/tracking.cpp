@@ -83,9 +83,10 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
   if (!tracked && !last_) {
     tracked = relocalise(frame, view);
     if (!tracked && is_start_doubtful()) {
-      if (auto started = start_by_motion(frame, view)) return started;
+      if (auto started = start_anew(frame, view)) return started;
     }
   }
+  num_lost_ = tracked ? 0 : num_lost_ + 1;
   if (tracked) {
     if (starter_) starter_->forget();
     follow(*tracked);
@@ -147,11 +148,21 @@ std::optional<map::TrackedView> Tracking::relocalise(const core::Frame& frame,
       keyframe_from_body
           ? tracker_.track(view, around, match.holder_from_keyframe * *keyframe_from_body)
           : tracker_.track_anywhere(view, around);
-  if (!track || track->pose.status == core::FrameStatus::kWeak) return std::nullopt;
+  if (!track || track->pose.status == core::FrameStatus::kWeak || !is_within_reach(track->pose))
+    return std::nullopt;
   local_map_ = around;
   map::TrackedView tracked = tracked_view(view, *track);
   tracked.pose.status = core::FrameStatus::kResumed;
   return tracked;
+}
+
+bool Tracking::is_within_reach(const core::FramePose& pose) const {
+  constexpr double kAnyhow_m = 0.5;  // the map may have moved
+  const auto last = std::find_if(frames_.rbegin(), frames_.rend(),
+                                 [](const core::FramePose& frame) { return frame.is_measured; });
+  if (last == frames_.rend() || is_without_depth(map_)) return true;
+  const double way_m = (world_from(pose).translation - world_from(*last).translation).norm();
+  return way_m <= kAnyhow_m + config_.track.max_speed_m_s * (pose.stamp_s - last->stamp_s);
 }
 
 void Tracking::follow(map::TrackedView& tracked) {
@@ -206,6 +217,7 @@ std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
   if (starter_) return start_by_motion(frame, view);
   if (!map::can_start(view, config_.map)) return std::nullopt;
   mapping_.send(StartMap{view, frame.images[0]});
+  give_up_poses();
   begin_tracking(view, map::num_with_depth(view));
   return last_;
 }
@@ -229,8 +241,14 @@ std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& fra
 }
 
 bool Tracking::is_start_doubtful() const {
-  return starter_ && num_keyframes_ - num_given_up_ <
-                         static_cast<std::uint64_t>(config_.track.start.provisional_keyframes);
+  return session_ == 0 && num_keyframes_ - num_given_up_ <
+                              static_cast<std::uint64_t>(config_.track.start.provisional_keyframes);
+}
+
+std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
+                                                     const features::View& view) {
+  if (!starter_ && num_lost_ < config_.track.lost_frames_to_restart) return std::nullopt;
+  return start(frame, view);
 }
 
 // What was sent is sent again.

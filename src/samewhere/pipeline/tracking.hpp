@@ -53,6 +53,9 @@ class Tracking {
   // Lost: which place of the whole map is this? Then tracking must find a pose there that is not
   // weak.
   std::optional<map::TrackedView> relocalise(const core::Frame& frame, const features::View& view);
+  // Whether one can have got there since the last pose. What lies beyond is another place that
+  // looks like this one.
+  bool is_within_reach(const core::FramePose& pose) const;
   // The reference goes along with the camera: it is the keyframe that shows most of what the view
   // shows, however old, and the local map is what lies around it.
   void follow(map::TrackedView& tracked);
@@ -71,6 +74,8 @@ class Tracking {
                                                   const features::View& view);
   // Whether who is lost in this map may give it up for a new one.
   bool is_start_doubtful() const;
+  // He does; with depth not at once: what hides the view may pass.
+  std::optional<map::TrackedView> start_anew(const core::Frame& frame, const features::View& view);
   // No frame so far has a pose.
   void give_up_poses();
   // Frames that were passed while the start was awaited: found in the map that it made.
@@ -120,6 +125,7 @@ class Tracking {
   std::vector<core::FramePose> frames_;
   std::size_t num_sent_frames_ = 0;
   std::optional<map::TrackedView> last_;  // the frame before, if it was located
+  int num_lost_ = 0;                      // frames since then
   core::Rigid3 last_from_next_;           // motion model: the last step once more
 };
 

@@ -31,7 +31,7 @@ constexpr const char* kTables[] = {kHeader, kState,      kRig,   kKeyframe,    k
                                    kFrame,  kDescriptor, kLedger};
 
 // 2: observations have a cause, loops may be doubted.
-constexpr std::int64_t kMapFileVersion = 3;
+constexpr std::int64_t kMapFileVersion = 4;
 constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion, kTables};
 
 // How much a commit left: rows that went missing are missed.

@@ -50,6 +50,7 @@ template <class Archive>
 void fields(Archive& archive, Value<Archive, Keyframe>& keyframe) {
   archive(keyframe.id, keyframe.world_from_body, keyframe.odometry,
           keyframe.refined_parent_from_keyframe, keyframe.refined_at,
+          keyframe.settled_parent_from_keyframe, keyframe.settled_at,
           keyframe.culled_parent_from_keyframe, keyframe.log_scale);
 }
 

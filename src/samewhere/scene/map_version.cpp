@@ -82,6 +82,12 @@ void skip_parent(const MapVersion& map, Keyframe& child) {
     return geometry::UncertainPose{edge.parent_from_keyframe, edge.information.inverse()};
   };
   const auto joined = compose(edge_of(*parent.odometry), edge_of(*child.odometry));
+  if (parent.settled_parent_from_keyframe || child.settled_parent_from_keyframe) {
+    child.settled_parent_from_keyframe =
+        settled_parent_from_keyframe(parent) * settled_parent_from_keyframe(child);
+    child.settled_at =
+        std::max({parent.settled_at, child.settled_at, parent.refined_at, child.refined_at});
+  }
   if (parent.refined_parent_from_keyframe || child.refined_parent_from_keyframe)
     child.refined_parent_from_keyframe = parent_from_keyframe(parent) * parent_from_keyframe(child);
   child.refined_at = std::max(parent.refined_at, child.refined_at);
@@ -139,6 +145,11 @@ void move(MapVersion& map, const Edit& edit) {
     keyframe.refined_parent_from_keyframe = refinement.parent_from_keyframe;
     keyframe.refined_at = map.number;
   }
+  for (const auto& settlement : edit.settled) {
+    Keyframe& keyframe = map.keyframes.edit(settlement.keyframe.index());
+    keyframe.settled_parent_from_keyframe = settlement.parent_from_keyframe;
+    keyframe.settled_at = map.number;
+  }
   for (const auto& change : edit.landmark_changes)
     map.landmarks.edit(change.landmark.index()).position_in_anchor = change.position_in_anchor;
 }
@@ -177,6 +188,13 @@ Eigen::Vector3d position_in_world(const MapVersion& map, const Landmark& landmar
 core::Rigid3 parent_from_keyframe(const Keyframe& keyframe) {
   core::require(keyframe.odometry.has_value(), "the first keyframe of a session has no parent");
   return keyframe.refined_parent_from_keyframe.value_or(keyframe.odometry->parent_from_keyframe);
+}
+
+core::Rigid3 settled_parent_from_keyframe(const Keyframe& keyframe) {
+  const bool is_youngest =
+      keyframe.settled_parent_from_keyframe &&
+      (!keyframe.refined_parent_from_keyframe || keyframe.settled_at >= keyframe.refined_at);
+  return is_youngest ? *keyframe.settled_parent_from_keyframe : parent_from_keyframe(keyframe);
 }
 
 Holder holder_of(const MapVersion& map, core::KeyframeId id) {

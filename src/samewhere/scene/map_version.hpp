@@ -62,6 +62,9 @@ struct Keyframe {
   // and as free of loops.
   std::optional<core::Rigid3> refined_parent_from_keyframe;
   std::uint64_t refined_at = 0;  // MapVersion::number then
+  // The same by a full bundle: that rests on the loops of its time.
+  std::optional<core::Rigid3> settled_parent_from_keyframe;
+  std::uint64_t settled_at = 0;  // MapVersion::number then
   // Set: culled. It shows no landmark any more; its pose hangs on its odometry parent.
   std::optional<core::Rigid3> culled_parent_from_keyframe;
   // By what lengths around it were stretched since it and its parent were measured to be of one
@@ -156,6 +159,7 @@ struct Edit {
   std::vector<Sighting> sightings;
   std::vector<PoseChange> pose_changes;
   std::vector<Refinement> refinements;
+  std::vector<Refinement> settled;  // by a full bundle: resting on loops
   std::vector<LandmarkChange> landmark_changes;
   std::vector<RemovedObservation> removed_observations;
   std::vector<Merge> merges;
@@ -180,6 +184,9 @@ Eigen::Vector3d position_in_world(const MapVersion& map, const Landmark& landmar
 // Where a keyframe is relative to its odometry parent, as well as is known without loops: by
 // bundles if they saw both, else by odometry. ContractError without a parent.
 core::Rigid3 parent_from_keyframe(const Keyframe& keyframe);
+// The same as well as is known with loops: by a full bundle, unless something is known that is
+// younger.
+core::Rigid3 settled_parent_from_keyframe(const Keyframe& keyframe);
 
 // Pose of a keyframe, culled or not.
 core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id);

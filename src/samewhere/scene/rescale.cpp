@@ -18,7 +18,8 @@ void stretch(Keyframe& keyframe, double own, double of_parent) {
   if (!keyframe.odometry) return;
   stretch(keyframe.odometry->parent_from_keyframe, keyframe.odometry->information, of_parent);
   for (auto* parent_from_keyframe :
-       {&keyframe.refined_parent_from_keyframe, &keyframe.culled_parent_from_keyframe})
+       {&keyframe.refined_parent_from_keyframe, &keyframe.settled_parent_from_keyframe,
+        &keyframe.culled_parent_from_keyframe})
     if (*parent_from_keyframe) (*parent_from_keyframe)->translation *= of_parent;
 }
 

@@ -219,6 +219,27 @@ TEST_F(TwoKeyframes, ARefinementOutlivesTheKeyframeItWentThrough) {
             1e-12);
 }
 
+TEST_F(TwoKeyframes, WhatAFullBundleSettledIsBetterUntilALocalOneComesAndNeverFreeOfLoops) {
+  const auto along_z = [](double z_m) {
+    return core::Rigid3{Eigen::Quaterniond::Identity(), {0.0, 0.0, z_m}};
+  };
+  Edit settle;
+  settle.settled = {{core::KeyframeId(2), along_z(0.4)}};
+  const MapVersion three = apply(with_third(map_, view_), settle);
+  EXPECT_EQ(settled_parent_from_keyframe(three.keyframes[2]).translation.z(), 0.4);
+  EXPECT_EQ(parent_from_keyframe(three.keyframes[2]).translation.z(), 0.3);
+  Edit cull;
+  cull.culled_keyframes = {core::KeyframeId(1)};
+  const MapVersion culled = apply(three, cull);
+  EXPECT_LT((settled_parent_from_keyframe(culled.keyframes[2]).translation -
+             Eigen::Vector3d(0.5, 0.0, 0.4))
+                .norm(),
+            1e-12);
+  Edit refine;
+  refine.refinements = {{core::KeyframeId(2), along_z(0.7)}};
+  EXPECT_EQ(settled_parent_from_keyframe(apply(three, refine).keyframes[2]).translation.z(), 0.7);
+}
+
 TEST_F(TwoKeyframes, TheFirstKeyframeAndOneOfALoopCannotGo) {
   Edit first;
   first.culled_keyframes = {core::KeyframeId(0)};

@@ -96,6 +96,8 @@ class RandomEdits {
                                      random_.uniform() < 0.5 ? 1.0 : 0.5 + random_.uniform()});
       if (keyframe.odometry && random_.index(4) == 0)
         edit.refinements.push_back({keyframe.id, random_pose(random_)});
+      if (keyframe.odometry && random_.index(8) == 0)
+        edit.settled.push_back({keyframe.id, random_pose(random_)});
     }
   }
 

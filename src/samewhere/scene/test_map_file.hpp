@@ -42,7 +42,9 @@ inline bool is_same(const Keyframe& a, const Keyframe& b) {
   return a.id == b.id && is_same(a.world_from_body, b.world_from_body) &&
          is_same(a.odometry, b.odometry) && is_same(a.view, b.view) && a.slots == b.slots &&
          is_same(a.refined_parent_from_keyframe, b.refined_parent_from_keyframe) &&
-         a.refined_at == b.refined_at && a.log_scale == b.log_scale &&
+         a.refined_at == b.refined_at &&
+         is_same(a.settled_parent_from_keyframe, b.settled_parent_from_keyframe) &&
+         a.settled_at == b.settled_at && a.log_scale == b.log_scale &&
          is_same(a.culled_parent_from_keyframe, b.culled_parent_from_keyframe);
 }
 

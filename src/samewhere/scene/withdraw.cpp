@@ -19,9 +19,19 @@ void remove_edges(MapVersion& map, const Causes& causes) {
   }
 }
 
+// A full bundle rests on all loops that were there, and places every keyframe.
+void forget_settled(MapVersion& map, std::uint64_t since) {
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    const Keyframe& keyframe = map.keyframes[i];
+    if (keyframe.settled_parent_from_keyframe && keyframe.settled_at >= since)
+      map.keyframes.edit(i).settled_parent_from_keyframe.reset();
+  }
+}
+
 void forget_refinements(MapVersion& map, const Causes& causes) {
   for (const auto& loop : map.loops) {
     if (!causes.contains(loop.cause)) continue;
+    forget_settled(map, loop.closed_at);
     for (std::size_t i = 0; i <= std::max(loop.query, loop.match).index(); ++i) {
       const Keyframe& keyframe = map.keyframes[i];
       if (keyframe.refined_parent_from_keyframe && keyframe.refined_at >= loop.closed_at)

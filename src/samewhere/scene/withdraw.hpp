@@ -16,7 +16,8 @@ namespace samewhere::scene {
 // - Who comes back shows again wherever it showed when it was merged, but in keyframes that were
 //   culled since. What it had gone into, if culled since, comes back with what is still free.
 // - Keyframes older than the loop that a bundle refined since are where odometry measured them,
-//   relative to their parents: the loop had bent what held that bundle.
+//   relative to their parents: the loop had bent what held that bundle. What a full bundle settled
+//   since is forgotten of all keyframes.
 //
 // Poses and positions stay. Throws ContractError for a cause of no loop edge of the map and for a
 // landmark that is not merged.

@@ -296,6 +296,30 @@ TEST_F(Withdrawing, WhatBundlesFoundOfWhatIsOlderThanTheLoopSinceThenIsForgotten
   EXPECT_TRUE(after.keyframes[newest + 1].refined_parent_from_keyframe) << "younger than the loop";
 }
 
+TEST_F(Withdrawing, WhatAFullBundleSettledSinceTheLoopIsForgottenEverywhere) {
+  begin(8);
+  const std::uint64_t newest = map_.keyframes.back().id.index();
+  const auto settle = [&](std::uint64_t keyframe) {
+    Edit edit;
+    edit.settled = {{core::KeyframeId(keyframe), random_pose(random_)}};
+    map_ = apply(std::move(map_), edit);
+  };
+  const auto is_settled = [](const MapVersion& map, std::uint64_t keyframe) {
+    return map.keyframes[keyframe].settled_parent_from_keyframe.has_value();
+  };
+  settle(newest - 1);
+  Edit edge;
+  edge.loops = {lie_};
+  map_ = apply(std::move(map_), edge);
+  add_rich_keyframe(8);
+  settle(newest);
+  settle(newest + 1);
+  const MapVersion after = without_lie();
+  EXPECT_TRUE(is_settled(after, newest - 1)) << "settled before";
+  EXPECT_FALSE(is_settled(after, newest));
+  EXPECT_FALSE(is_settled(after, newest + 1)) << "younger than the loop, but placed by all";
+}
+
 TEST_F(Withdrawing, ACauseOfNoLoopAndALandmarkThatIsNotMergedAreBrokenPromises) {
   begin(6);
   Edit edit;

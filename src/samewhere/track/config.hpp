@@ -95,6 +95,8 @@ struct Config {
   int min_inliers = 15;
   int weak_inliers = 40;
   int sure_inliers = 100;
+  double max_speed_m_s = 3.0;
+  int lost_frames_to_restart = 30;
   StartConfig start;
   DriftConfig drift;
 };
@@ -120,6 +122,16 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
          .min = 6,
          .max = 10000});
+  visit("max_speed_m_s", config.max_speed_m_s,
+        {.help = "who is lost is found nowhere beyond what this speed reaches since the last pose; "
+                 "without depth there are no metres, and no limit",
+         .min = 0.01,
+         .max = 1000.0});
+  visit("lost_frames_to_restart", config.lost_frames_to_restart,
+        {.help = "with depth, lost for so many frames in a map of fewer than "
+                 "start.provisional_keyframes: it is given up for a new start",
+         .min = 1,
+         .max = 1000000});
   visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
   visit("drift", config.drift,
         {.help = "Error model of the odometry, from which its information is made"});
