@@ -13,6 +13,7 @@ void add_eval_command(CLI::App& app);
 void add_dense_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app);
+void add_ledger_command(CLI::App& app);
 void add_map_command(CLI::App& app);
 void add_optimize_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);

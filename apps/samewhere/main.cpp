@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   add_dense_command(app);
   add_bench_command(app, exit_code);
   add_twin_command(app);
+  add_ledger_command(app);
   add_map_command(app);
   add_optimize_command(app);
   add_config_command(app);

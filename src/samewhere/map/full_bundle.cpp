@@ -118,6 +118,39 @@ bool is_as_it_was(const scene::Landmark& was, const scene::Landmark& is) {
   return is_live(is) && was.anchor == is.anchor && was.position_in_anchor == is.position_in_anchor;
 }
 
+void carry_poses(const MapVersion& then, const MapVersion& now, const scene::Edit& found,
+                 scene::Edit& edit) {
+  const Moves moves(now, found);
+  std::map<KeyframeId, core::Rigid3> world_from_body;
+  for (std::size_t i = 0; i < now.keyframes.size(); ++i) {
+    const scene::Keyframe& keyframe = now.keyframes[i];
+    if (!is_live(keyframe)) continue;
+    world_from_body[keyframe.id] = keyframe.world_from_body;
+    const auto move = moves.of(keyframe.id);
+    if (!move) continue;
+    world_from_body[keyframe.id] = move->new_from_old * keyframe.world_from_body;
+    edit.pose_changes.push_back(*move);
+  }
+  for (const auto& settlement : found.settled) {
+    const scene::Keyframe& keyframe = now.at(settlement.keyframe);
+    if (!is_live(keyframe) || !has_same_parent(then.at(keyframe.id), keyframe)) continue;
+    edit.settled.push_back({keyframe.id, inverse(world_from_body.at(keyframe.odometry->parent)) *
+                                             world_from_body.at(keyframe.id)});
+  }
+}
+
+void carry_points(const MapVersion& then, const MapVersion& now, const scene::Edit& found,
+                  scene::Edit& edit) {
+  for (const auto& change : found.landmark_changes)
+    if (is_as_it_was(then.at(change.landmark), now.at(change.landmark)))
+      edit.landmark_changes.push_back(change);
+  for (const auto& removed : found.removed_observations) {
+    const scene::Landmark& landmark = now.at(removed.landmark);
+    if (is_live(landmark) && is_seen_by(landmark, removed.keyframe))
+      edit.removed_observations.push_back(removed);
+  }
+}
+
 }  // namespace
 
 BundleWindow window_of_all(const MapVersion& map, const Config& config) {
@@ -156,30 +189,9 @@ scene::Edit full_bundle(const MapVersion& map, const BundleWindow& window,
 }
 
 scene::Edit carried_over(const MapVersion& then, const MapVersion& now, const scene::Edit& found) {
-  const Moves moves(now, found);
-  std::set<KeyframeId> settled;
-  for (const auto& settlement : found.settled) settled.insert(settlement.keyframe);
-
   scene::Edit edit;
-  std::map<KeyframeId, core::Rigid3> world_from_body;
-  for (std::size_t i = 0; i < now.keyframes.size(); ++i) {
-    const scene::Keyframe& keyframe = now.keyframes[i];
-    if (!is_live(keyframe)) continue;
-    const auto move = moves.of(keyframe.id);
-    world_from_body[keyframe.id] =
-        move ? move->new_from_old * keyframe.world_from_body : keyframe.world_from_body;
-    if (move) edit.pose_changes.push_back(*move);
-    if (!settled.contains(keyframe.id) || !has_same_parent(then.at(keyframe.id), keyframe))
-      continue;
-    edit.settled.push_back({keyframe.id, inverse(world_from_body.at(keyframe.odometry->parent)) *
-                                             world_from_body.at(keyframe.id)});
-  }
-  for (const auto& change : found.landmark_changes)
-    if (is_as_it_was(then.at(change.landmark), now.at(change.landmark)))
-      edit.landmark_changes.push_back(change);
-  for (const auto& removed : found.removed_observations)
-    if (is_live(now.at(removed.landmark)) && is_seen_by(now.at(removed.landmark), removed.keyframe))
-      edit.removed_observations.push_back(removed);
+  carry_poses(then, now, found, edit);
+  carry_points(then, now, found, edit);
   return edit;
 }
 

@@ -13,26 +13,7 @@ namespace {
 
 using report::Figure;
 
-std::vector<evaluate::AcceptedLoop> accepted_loops(const report::RunRecord& record) {
-  std::map<core::FrameId, double> stamp_of;
-  for (const auto& frame : record.frames) stamp_of[frame.pose.frame] = frame.pose.stamp_s;
-  std::vector<evaluate::AcceptedLoop> loops;
-  for (const auto* row : report::final_rows(record.ledger)) {
-    const auto* closure = std::get_if<core::LoopClosure>(&row->verdict);
-    if (closure == nullptr) continue;
-    evaluate::AcceptedLoop loop;
-    loop.query = static_cast<int>(row->candidate.query.index());
-    loop.match = static_cast<int>(row->candidate.match.index());
-    loop.query_stamp_s = stamp_of.at(row->candidate.query);
-    loop.match_stamp_s = stamp_of.at(row->candidate.match);
-    if (closure->match_from_query) loop.match_from_query = rigid_part(*closure->match_from_query);
-    loops.push_back(loop);
-  }
-  return loops;
-}
-
-int count_refused(const report::RunRecord& record, core::Refusal stage) {
-  const auto rows = report::final_rows(record.ledger);
+int count_refused(const std::vector<const core::LedgerRow*>& rows, core::Refusal stage) {
   return static_cast<int>(std::count_if(rows.begin(), rows.end(), [&](const auto* row) {
     const auto* rejection = std::get_if<core::Rejection>(&row->verdict);
     return rejection != nullptr && rejection->stage == stage;
@@ -88,16 +69,34 @@ Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
 
 }  // namespace
 
+void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings& findings) {
+  const auto rows = report::final_rows(ledger);
+  findings.num_candidates = static_cast<int>(rows.size());
+  findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
+  findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
+  for (const auto* row : rows) {
+    const auto* closure = std::get_if<core::LoopClosure>(&row->verdict);
+    if (closure == nullptr) continue;
+    evaluate::AcceptedLoop loop;
+    loop.query = static_cast<int>(row->candidate.query.index());
+    loop.match = static_cast<int>(row->candidate.match.index());
+    loop.query_stamp_s = stamp_of.at(row->candidate.query);
+    loop.match_stamp_s = stamp_of.at(row->candidate.match);
+    if (closure->match_from_query) loop.match_from_query = rigid_part(*closure->match_from_query);
+    findings.loops.push_back(loop);
+  }
+}
+
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
-  return {static_cast<int>(record.frames.size()),
-          report::measured_trajectory(record.frames),
-          record.odometry,
-          static_cast<int>(report::final_rows(record.ledger).size()),
-          accepted_loops(record),
-          is_scale_free,
-          {},
-          count_refused(record, core::Refusal::kGraph),
-          count_refused(record, core::Refusal::kWithdrawn)};
+  SlamFindings findings;
+  findings.num_frames = static_cast<int>(record.frames.size());
+  findings.trajectory = report::measured_trajectory(record.frames);
+  findings.odometry = record.odometry;
+  findings.is_scale_free = is_scale_free;
+  StampOf stamp_of;
+  for (const auto& frame : record.frames) stamp_of[frame.pose.frame] = frame.pose.stamp_s;
+  add_loops(record.ledger, stamp_of, findings);
+  return findings;
 }
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth) {

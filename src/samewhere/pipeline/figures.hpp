@@ -33,6 +33,10 @@ struct SlamFindings {
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free);
 
+using StampOf = std::map<core::FrameId, double>;  // seconds
+// What a ledger says of loops. Throws std::out_of_range for a loop of a frame without a stamp.
+void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings& findings);
+
 // How good a SLAM run is. Parts without a truth are absent.
 struct SlamEvaluation {
   int num_frames = 0;

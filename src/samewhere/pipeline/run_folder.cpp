@@ -1,10 +1,7 @@
-#include <algorithm>
-#include <map>
 #include <sstream>
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -13,21 +10,11 @@
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/report/loops_read.hpp>
 #include <samewhere/report/timing_json.hpp>
 
 namespace samewhere::pipeline {
 namespace {
-
-using Json = nlohmann::json;
-
-Json read_loops(const std::filesystem::path& path) {
-  const Json loops = Json::parse(core::read_file(path), nullptr, false);
-  if (loops.is_discarded() || !loops.contains("candidates") || !loops["candidates"].is_array()) {
-    throw core::InputError(path.string() +
-                           ": not a loops.json; expected {\"version\": 1, \"candidates\": [...]}");
-  }
-  return loops["candidates"];
-}
 
 // Stamps of all frames, by position: the second column of frames.csv.
 std::vector<double> read_stamps(const std::filesystem::path& path) {
@@ -45,34 +32,6 @@ std::vector<double> read_stamps(const std::filesystem::path& path) {
     }
   }
   return stamps_s;
-}
-
-std::optional<core::Rigid3> read_pose(const Json& pose) {
-  if (pose.is_null()) return std::nullopt;
-  const auto v = pose.get<std::array<double, 7>>();
-  return core::Rigid3{Eigen::Quaterniond(v[6], v[3], v[4], v[5]), {v[0], v[1], v[2]}};
-}
-
-std::vector<evaluate::AcceptedLoop> accepted_loops(const Json& candidates,
-                                                   const std::vector<double>& stamps_s) {
-  std::vector<evaluate::AcceptedLoop> loops;
-  for (const auto& candidate : candidates) {
-    if (candidate.at("verdict") != "LOOP") continue;
-    evaluate::AcceptedLoop loop;
-    loop.query = candidate.at("query").get<int>();
-    loop.match = candidate.at("match").get<int>();
-    loop.query_stamp_s = stamps_s.at(static_cast<std::size_t>(loop.query));
-    loop.match_stamp_s = stamps_s.at(static_cast<std::size_t>(loop.match));
-    loop.match_from_query = read_pose(candidate.at("match_from_query"));
-    loops.push_back(loop);
-  }
-  return loops;
-}
-
-int count_stage(const Json& candidates, core::Refusal stage) {
-  return static_cast<int>(std::count_if(
-      candidates.begin(), candidates.end(),
-      [&](const Json& candidate) { return candidate.value("stage", "") == core::name_of(stage); }));
 }
 
 std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
@@ -95,33 +54,35 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
 
 SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_scale_free) {
   const std::vector<double> stamps_s = read_stamps(folder / "frames.csv");
-  const Json candidates = read_loops(folder / "loops.json");
+  SlamFindings findings;
+  findings.num_frames = static_cast<int>(stamps_s.size());
+  findings.trajectory = core::read_tum(folder / "trajectory.tum");
+  findings.odometry = core::read_tum(folder / "odometry.tum");
+  findings.is_scale_free = is_scale_free;
+  StampOf stamp_of;
+  for (std::size_t i = 0; i < stamps_s.size(); ++i) stamp_of[core::FrameId(i)] = stamps_s[i];
   try {
-    return {static_cast<int>(stamps_s.size()),
-            core::read_tum(folder / "trajectory.tum"),
-            core::read_tum(folder / "odometry.tum"),
-            static_cast<int>(candidates.size()),
-            accepted_loops(candidates, stamps_s),
-            is_scale_free,
-            {},
-            count_stage(candidates, core::Refusal::kGraph),
-            count_stage(candidates, core::Refusal::kWithdrawn)};
-  } catch (const Json::exception& error) {
-    throw core::InputError(fmt::format("{}: a candidate is not as expected: {}",
-                                       (folder / "loops.json").string(), error.what()));
+    add_loops(ledger_of_run(folder), stamp_of, findings);
   } catch (const std::out_of_range&) {
     throw core::InputError((folder / "loops.json").string() +
                            ": a loop names a frame that frames.csv does not have");
   }
+  return findings;
 }
 
 }  // namespace
 
-Config config_of_run(const std::filesystem::path& folder) {
+Config config_of_run(const std::filesystem::path& folder,
+                     const std::vector<std::string>& assignments) {
   Config config;
   const std::filesystem::path config_file = folder / "config.yaml";
   core::read_config(config, core::read_file(config_file), config_file.string());
+  for (const auto& assignment : assignments) core::set_config(config, assignment);
   return config;
+}
+
+core::Ledger ledger_of_run(const std::filesystem::path& folder) {
+  return report::read_loops_json(folder / "loops.json");
 }
 
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {
@@ -129,10 +90,9 @@ std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder)
   const auto source = open_source(config);
   const core::Truth truth = source->truth();
   if (std::filesystem::exists(folder / "matches.txt")) {
-    const RecognitionFindings findings{static_cast<int>(read_loops(folder / "loops.json").size()),
-                                       read_pairs(folder / "matches.txt"),
-                                       read_pairs(folder / "accepted.txt"),
-                                       config.retrieve.window_frames};
+    const RecognitionFindings findings{
+        static_cast<int>(ledger_of_run(folder).size()), read_pairs(folder / "matches.txt"),
+        read_pairs(folder / "accepted.txt"), config.retrieve.window_frames};
     return figures_of(evaluate_recognition(findings, truth));
   }
   return figures_of(

@@ -1,17 +1,24 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include <samewhere/core/ledger.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/report/record.hpp>
 #include <samewhere/report/table.hpp>
 
 namespace samewhere::pipeline {
 
-// The config that was in force in a finished run. Throws InputError if config.yaml is missing or
-// broken.
-Config config_of_run(const std::filesystem::path& folder);
+// The config that was in force in a finished run, then the assignments "section.key=value". Throws
+// InputError if config.yaml is missing or broken, and for an assignment that is.
+Config config_of_run(const std::filesystem::path& folder,
+                     const std::vector<std::string>& assignments = {});
+
+// The last verdict on each candidate of a finished run. Throws InputError as
+// report::read_loops_json does.
+core::Ledger ledger_of_run(const std::filesystem::path& folder);
 
 // The figures of a finished run, measured anew from the files in its folder against the truth that
 // comes with its source (config.yaml says which). Recognition alone is told by its matches.txt.

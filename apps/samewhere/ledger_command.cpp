@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "print.hpp"
+#include <samewhere/core/errors.hpp>
+#include <samewhere/pipeline/replay.hpp>
+#include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/report/funnel.hpp>
+#include <samewhere/report/table.hpp>
+
+namespace samewhere::app {
+namespace {
+
+struct LedgerCommand {
+  std::string folder;
+  std::string verdict;
+  std::string stage;
+  int query = -1;
+  std::size_t candidate = 0;
+  std::vector<std::string> assignments;
+};
+
+bool is_wanted(const core::LedgerRow& row, const LedgerCommand& command) {
+  const auto query = static_cast<std::uint64_t>(command.query);
+  return (command.verdict.empty() || core::name_of(row.verdict) == command.verdict) &&
+         (command.stage.empty() || core::stage_of(row.verdict) == command.stage) &&
+         (command.query < 0 || row.candidate.query.index() == query);
+}
+
+// One line: who, what, and why.
+std::vector<std::string> cells_of(const core::LedgerRow& row) {
+  return {std::to_string(row.candidate.id.index()),    std::to_string(row.candidate.query.index()),
+          std::to_string(row.candidate.match.index()), std::string(core::name_of(row.verdict)),
+          std::string(core::stage_of(row.verdict)),    core::reason_of(row.verdict)};
+}
+
+const std::vector<std::string> kColumns = {"candidate", "query", "match",
+                                           "verdict",   "stage", "why"};
+
+void list(const LedgerCommand& command) {
+  report::Table table{kColumns, {}};
+  for (const core::LedgerRow& row : pipeline::ledger_of_run(command.folder))
+    if (is_wanted(row, command)) table.rows.push_back(cells_of(row));
+  fmt::print("{}", report::as_text(table));
+}
+
+void add_figure(std::vector<report::Figure>& figures, const char* name, const char* unit,
+                std::optional<double> value) {
+  figures.push_back({name, value ? fmt::format("{:.4g}{}", *value, unit) : "unmeasured"});
+}
+
+std::vector<report::Figure> figures_of(const core::LedgerRow& row) {
+  const core::Evidence& evidence = core::evidence_of(row.verdict);
+  std::vector<report::Figure> figures = {
+      {"query / match", fmt::format("frame {} / frame {}", row.candidate.query.index(),
+                                    row.candidate.match.index())},
+      {"verdict", fmt::format("{}, {}", core::name_of(row.verdict), core::stage_of(row.verdict))},
+      {"why", core::reason_of(row.verdict)}};
+  const auto& geometry = evidence.geometry;
+  const auto of_geometry = [&](double core::GeometryEvidence::*field) {
+    return geometry ? std::optional((*geometry).*field) : std::nullopt;
+  };
+  add_figure(figures, "similarity", "", evidence.similarity);
+  add_figure(figures, "matches", "",
+             geometry ? std::optional<double>(geometry->num_matches) : std::nullopt);
+  add_figure(figures, "inliers", "",
+             geometry ? std::optional<double>(geometry->num_inliers) : std::nullopt);
+  add_figure(figures, "inliers of matches", "", of_geometry(&core::GeometryEvidence::inlier_ratio));
+  add_figure(figures, "share of the picture", "",
+             of_geometry(&core::GeometryEvidence::spread_ratio));
+  add_figure(figures, "reprojection error", " px",
+             of_geometry(&core::GeometryEvidence::reprojection_rmse_px));
+  add_figure(figures, "poses of both views apart", " m",
+             geometry ? geometry->disagreement_m : std::nullopt);
+  const auto& odometry = evidence.odometry;
+  add_figure(figures, "moves the camera by", " m",
+             odometry ? std::optional(odometry->correction_m) : std::nullopt);
+  add_figure(figures, "chi-square of odometry", "",
+             odometry ? std::optional(odometry->mahalanobis_squared) : std::nullopt);
+  return figures;
+}
+
+void show(const LedgerCommand& command) {
+  const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
+  if (command.candidate >= ledger.size())
+    throw core::InputError(fmt::format("{}: there is no candidate {}; expected 0 to {}",
+                                       command.folder, command.candidate,
+                                       static_cast<long>(ledger.size()) - 1));
+  print_figures(figures_of(ledger[command.candidate]));
+}
+
+core::Ledger rows_after(const std::vector<pipeline::ReplayedRow>& replayed) {
+  core::Ledger ledger;
+  for (const auto& row : replayed) ledger.push_back({row.before.candidate, row.after});
+  return ledger;
+}
+
+void replay(const LedgerCommand& command) {
+  const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
+  const verify::Config config = pipeline::config_of_run(command.folder, command.assignments).verify;
+  const auto replayed = pipeline::replay(ledger, config);
+  report::Table changed{kColumns, {}};
+  for (const auto& row : replayed)
+    if (row.outcome == pipeline::Replay::kChanged)
+      changed.rows.push_back(cells_of({row.before.candidate, row.after}));
+  const auto count = [&](pipeline::Replay outcome) {
+    return std::to_string(std::count_if(replayed.begin(), replayed.end(),
+                                        [&](const auto& row) { return row.outcome == outcome; }));
+  };
+  print_figures({{"candidates", std::to_string(replayed.size())},
+                 {"as before", count(pipeline::Replay::kSame)},
+                 {"judged otherwise", count(pipeline::Replay::kChanged)},
+                 {"unmeasured", count(pipeline::Replay::kUnmeasured)},
+                 {"refused by the graph of loops, not replayed", count(pipeline::Replay::kGraph)}});
+  fmt::print("\n{}", report::funnel_text(report::funnel(rows_after(replayed))));
+  if (!changed.rows.empty()) fmt::print("\nJudged otherwise:\n{}", report::as_text(changed));
+}
+
+void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
+  CLI::App* sub = ledger.add_subcommand("list", "The candidates, a line each");
+  sub->add_option("--verdict", command->verdict, "only these")
+      ->check(CLI::IsMember({"LOOP", "NOT", "AMBIGUOUS"}));
+  sub->add_option("--stage", command->stage, "only those that this check refused");
+  sub->add_option("--query", command->query, "only those of this frame");
+  sub->callback([command] { list(*command); });
+}
+
+void add_show(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
+  CLI::App* sub = ledger.add_subcommand("show", "All that was measured of one candidate");
+  sub->add_option("N", command->candidate, "its number, as `list` prints it")->required();
+  sub->callback([command] { show(*command); });
+}
+
+void add_replay(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
+  CLI::App* sub = ledger.add_subcommand(
+      "replay", "Judge all candidates anew, with other thresholds and without the pictures");
+  sub->add_option("--set", command->assignments, "verify.NAME=VALUE, as often as needed")
+      ->required();
+  sub->callback([command] { replay(*command); });
+}
+
+}  // namespace
+
+void add_ledger_command(CLI::App& app) {
+  auto command = std::make_shared<LedgerCommand>();
+  CLI::App* sub = app.add_subcommand("ledger", "Why each candidate of a run was refused or not");
+  sub->add_option("RUN", command->folder, "folder that `samewhere run` or `samewhere loops` wrote")
+      ->required();
+  sub->require_subcommand(1);
+  add_list(*sub, command);
+  add_show(*sub, command);
+  add_replay(*sub, command);
+  sub->footer(
+      "Examples:\n"
+      "  samewhere ledger runs/demo list --stage odometry\n"
+      "  samewhere ledger runs/demo show 12\n"
+      "  samewhere ledger runs/demo replay --set verify.min_inliers=80");
+}
+
+}  // namespace samewhere::app

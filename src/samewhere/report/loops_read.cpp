@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/report/loops_read.hpp>
+
+namespace samewhere::report {
+namespace {
+
+using Json = nlohmann::json;
+
+// One entry of the file. What is wrong with it comes out as a Json exception.
+class Entry {
+ public:
+  Entry(const Json& json, std::size_t position) : json_(json), scores_(json.at("scores")) {
+    row_.candidate = {core::CandidateId(position), frame("query"), frame("match"),
+                      scores_.at("similarity").get<double>()};
+  }
+
+  core::LedgerRow row() && {
+    const auto verdict = json_.at("verdict").get<std::string>();
+    const auto reason = json_.at("reason").get<std::string>();
+    const core::Evidence evidence = this->evidence();
+    if (verdict == "LOOP") {
+      core::LoopClosure loop{.candidate = row_.candidate.id, .evidence = evidence};
+      loop.match_from_query = pose();
+      loop.scale_is_free = scores_.contains("scale");
+      row_.verdict = loop;
+    } else if (verdict == "AMBIGUOUS") {
+      row_.verdict = core::Ambiguous{
+          .candidate = row_.candidate.id, .evidence = evidence, .rivals = {}, .reason = reason};
+    } else {
+      row_.verdict = core::Rejection{row_.candidate.id, evidence, stage(), reason};
+    }
+    return std::move(row_);
+  }
+
+ private:
+  core::FrameId frame(const char* name) const {
+    return core::FrameId(json_.at(name).get<std::uint64_t>());
+  }
+
+  std::optional<double> score(const char* name) const {
+    const auto found = scores_.find(name);
+    return found == scores_.end() ? std::nullopt : std::optional(found->get<double>());
+  }
+
+  core::Refusal stage() const {
+    const auto name = json_.at("stage").get<std::string>();
+    const auto found =
+        std::find_if(std::begin(core::kAllRefusals), std::end(core::kAllRefusals),
+                     [&](core::Refusal refusal) { return core::name_of(refusal) == name; });
+    if (found == std::end(core::kAllRefusals))
+      throw core::InputError(
+          fmt::format("\"stage\" is \"{}\"; expected the name of a check", name));
+    return *found;
+  }
+
+  std::optional<core::Sim3> pose() const {
+    const Json& numbers = json_.at("match_from_query");
+    if (numbers.is_null()) return std::nullopt;
+    const auto at = [&](std::size_t i) { return numbers.at(i).get<double>(); };
+    return core::Sim3{score("scale").value_or(1.0),
+                      Eigen::Quaterniond(at(6), at(3), at(4), at(5)),
+                      {at(0), at(1), at(2)}};
+  }
+
+  core::Evidence evidence() const {
+    core::Evidence evidence{.similarity = row_.candidate.similarity};
+    if (scores_.contains("num_matches")) evidence.geometry = geometry();
+    if (const auto squared = score("mahalanobis_squared"))
+      evidence.odometry = {score("correction_m").value_or(0.0),
+                           score("correction_rad").value_or(0.0), *squared};
+    return evidence;
+  }
+
+  core::GeometryEvidence geometry() const {
+    core::GeometryEvidence geometry;
+    geometry.num_matches = scores_.at("num_matches").get<int>();
+    geometry.num_inliers = scores_.at("num_inliers").get<int>();
+    geometry.inlier_ratio = score("inlier_ratio").value_or(0.0);
+    geometry.spread_ratio = score("spread_ratio").value_or(0.0);
+    geometry.reprojection_rmse_px = score("reprojection_rmse_px").value_or(0.0);
+    geometry.match_from_query = pose();
+    geometry.disagreement_m = score("disagreement_m");
+    geometry.disagreement_rad = score("disagreement_rad");
+    // a number without end is left out of the file
+    if (!geometry.disagreement_m && json_.at("stage") == "agreement")
+      geometry.disagreement_m = std::numeric_limits<double>::infinity();
+    return geometry;
+  }
+
+  const Json& json_;
+  const Json& scores_;
+  core::LedgerRow row_;
+};
+
+}  // namespace
+
+core::Ledger read_loops_json(const std::filesystem::path& path) {
+  const std::string text = core::read_file(path);
+  std::string where;
+  try {
+    const Json document = Json::parse(text);
+    const int version = document.at("version").get<int>();
+    if (version != 1) throw core::InputError(fmt::format("version {}; expected 1", version));
+    core::Ledger ledger;
+    for (const Json& json : document.at("candidates")) {
+      where = fmt::format("candidate {}: ", ledger.size());
+      ledger.push_back(Entry(json, ledger.size()).row());
+    }
+    return ledger;
+  } catch (const Json::exception& error) {
+    throw core::InputError(fmt::format("{}: {}expected what `samewhere run` writes, but {}",
+                                       path.string(), where, error.what()));
+  } catch (const core::InputError& error) {
+    throw core::InputError(fmt::format("{}: {}{}", path.string(), where, error.what()));
+  }
+}
+
+}  // namespace samewhere::report

@@ -1,0 +1,75 @@
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+#include <samewhere/report/funnel.hpp>
+#include <samewhere/report/loops.hpp>
+#include <samewhere/report/loops_read.hpp>
+#include <samewhere/report/test_record.hpp>
+
+namespace samewhere::report {
+namespace {
+
+using ::testing::HasSubstr;
+
+class LoopsRead : public testing::Test {
+ protected:
+  ~LoopsRead() override { std::filesystem::remove(path_); }
+
+  core::Ledger read(const std::string& text) const {
+    core::write_file(path_, text);
+    return read_loops_json(path_);
+  }
+
+  std::string complaint(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+
+  std::filesystem::path path_ = testing::TempDir() + "loops_read_test.json";
+};
+
+TEST_F(LoopsRead, WhatWasWrittenIsWrittenAgain) {
+  const core::Ledger ledger = sample_ledger();
+  const std::string text = loops_json(ledger);
+  const core::Ledger found = read(text);
+  EXPECT_EQ(loops_json(found), text);
+  ASSERT_EQ(found.size(), final_rows(ledger).size());
+  EXPECT_EQ(found[34].candidate.id, core::CandidateId(34)) << "by position";
+}
+
+TEST_F(LoopsRead, APoseThatOneViewAloneFindsStaysApartWithoutEnd) {
+  core::LedgerRow row = refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kAgreement,
+                                    evidence(0.8, 100, 50), "only one view");
+  std::get<core::Rejection>(row.verdict).evidence.geometry->disagreement_m =
+      std::numeric_limits<double>::infinity();
+  const core::Ledger found = read(loops_json({row}));
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->disagreement_m,
+            std::numeric_limits<double>::infinity());
+}
+
+TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
+  const std::string text = loops_json(sample_ledger());
+  for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})
+    EXPECT_THAT(complaint(text.substr(0, length)), HasSubstr("loops_read_test.json: "));
+  EXPECT_THAT(complaint(R"({"version": 2, "candidates": []})"), HasSubstr("version 2; expected 1"));
+  EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": 1}]})"),
+              HasSubstr("candidate 0: "));
+  EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": 1, "match": 0, "verdict": "NOT",
+      "stage": "mood", "reason": "", "scores": {"similarity": 0.5}, "match_from_query": null}]})"),
+              HasSubstr("candidate 0: \"stage\" is \"mood\""));
+  EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": "one", "match": 0,
+      "scores": {"similarity": 0.5}}]})"),
+              HasSubstr("candidate 0: "));
+}
+
+}  // namespace
+}  // namespace samewhere::report

@@ -1,0 +1,77 @@
+// `samewhere ledger` on what a run wrote, and on what none did.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program.hpp"
+#include <samewhere/core/file.hpp>
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kLoops = R"({"version": 1, "candidates": [
+{"query": 812, "match": 40, "verdict": "LOOP", "stage": "accepted", "reason": "60 features agree",
+ "scores": {"similarity": 0.8, "num_matches": 120, "num_inliers": 60, "inlier_ratio": 0.5,
+            "spread_ratio": 0.4, "reprojection_rmse_px": 1.1},
+ "match_from_query": [0.1, 0, 0, 0, 0, 0, 1]},
+{"query": 813, "match": 41, "verdict": "NOT", "stage": "odometry", "reason": "would move the camera",
+ "scores": {"similarity": 0.7, "num_matches": 150, "num_inliers": 90, "inlier_ratio": 0.6,
+            "spread_ratio": 0.4, "reprojection_rmse_px": 1.0, "correction_m": 9.8,
+            "correction_rad": 0.1, "mahalanobis_squared": 400.0},
+ "match_from_query": [9.8, 0, 0, 0, 0, 0, 1]}]})";
+
+class LedgerCommand : public testing::Test {
+ protected:
+  LedgerCommand() {
+    folder_.write("loops.json", kLoops);
+    folder_.write("config.yaml", "seed: 3\n");
+  }
+  Outcome run(const std::string& arguments) const {
+    return run_program("ledger " + quoted(folder_.root()) + " " + arguments, folder_.root());
+  }
+  input::TestFolder folder_;
+};
+
+TEST_F(LedgerCommand, ListsWhoWasRefusedAndWhy) {
+  const Outcome all = run("list");
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.out, HasSubstr("812"));
+  const Outcome refused = run("list --stage odometry");
+  EXPECT_THAT(refused.out, HasSubstr("would move the camera"));
+  EXPECT_EQ(refused.out.find("812"), std::string::npos);
+}
+
+TEST_F(LedgerCommand, ShowsAllThatWasMeasuredOfOne) {
+  const Outcome shown = run("show 1");
+  EXPECT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("9.8 m"));
+  EXPECT_THAT(run("show 0").out, HasSubstr("unmeasured")) << "odometry never spoke";
+  const Outcome none = run("show 2");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("no candidate 2; expected 0 to 1"));
+}
+
+TEST_F(LedgerCommand, ReplaysWithOtherThresholds) {
+  const Outcome strict = run("replay --set verify.min_inliers=80");
+  EXPECT_EQ(strict.exit_code, 0) << strict.err;
+  EXPECT_THAT(strict.out, HasSubstr("Judged otherwise"));
+  EXPECT_THAT(strict.out, HasSubstr("only 60 features agree on one geometry, 80 needed"));
+  const Outcome lax = run("replay --set verify.max_odometry_chi_square=500");
+  EXPECT_THAT(lax.out, HasSubstr("90 features agree"));
+  EXPECT_EQ(run("replay --set verify.nonsense=1").exit_code, 2);
+  EXPECT_EQ(run("replay").exit_code, 2);
+}
+
+TEST_F(LedgerCommand, AFolderThatNoRunWroteIsRefusedInOneLine) {
+  folder_.write("loops.json", std::string(kLoops).substr(0, 300));
+  const Outcome cut = run("list");
+  EXPECT_EQ(cut.exit_code, 2);
+  EXPECT_THAT(cut.err, HasSubstr("loops.json"));
+  EXPECT_EQ(std::count(cut.err.begin(), cut.err.end(), '\n'), 1);
+}
+
+}  // namespace
+}  // namespace samewhere::test
