@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -32,21 +33,32 @@ bool is_wanted(const core::LedgerRow& row, const LedgerCommand& command) {
          (command.query < 0 || row.candidate.query.index() == query);
 }
 
-// One line: who, what, and why.
-std::vector<std::string> cells_of(const core::LedgerRow& row) {
-  return {std::to_string(row.candidate.id.index()),    std::to_string(row.candidate.query.index()),
-          std::to_string(row.candidate.match.index()), std::string(core::name_of(row.verdict)),
-          std::string(core::stage_of(row.verdict)),    core::reason_of(row.verdict)};
+// A line each: who, what, and why. Sentences stand on the left, behind the table.
+std::string lines_of(const core::Ledger& rows) {
+  report::Table table{{"candidate", "query", "match", "verdict", "stage"}, {}};
+  for (const core::LedgerRow& row : rows) {
+    table.rows.push_back(
+        {std::to_string(row.candidate.id.index()), std::to_string(row.candidate.query.index()),
+         std::to_string(row.candidate.match.index()), std::string(core::name_of(row.verdict)),
+         std::string(core::stage_of(row.verdict))});
+  }
+  std::istringstream lines(report::as_text(table));
+  std::string text;
+  std::string line;
+  std::getline(lines, line);
+  text = line + "  why\n";
+  for (const core::LedgerRow& row : rows) {
+    std::getline(lines, line);
+    text += line + "  " + core::reason_of(row.verdict) + "\n";
+  }
+  return text;
 }
 
-const std::vector<std::string> kColumns = {"candidate", "query", "match",
-                                           "verdict",   "stage", "why"};
-
 void list(const LedgerCommand& command) {
-  report::Table table{kColumns, {}};
+  core::Ledger wanted;
   for (const core::LedgerRow& row : pipeline::ledger_of_run(command.folder))
-    if (is_wanted(row, command)) table.rows.push_back(cells_of(row));
-  fmt::print("{}", report::as_text(table));
+    if (is_wanted(row, command)) wanted.push_back(row);
+  fmt::print("{}", lines_of(wanted));
 }
 
 void add_figure(std::vector<report::Figure>& figures, const char* name, const char* unit,
@@ -104,10 +116,10 @@ void replay(const LedgerCommand& command) {
   const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
   const verify::Config config = pipeline::config_of_run(command.folder, command.assignments).verify;
   const auto replayed = pipeline::replay(ledger, config);
-  report::Table changed{kColumns, {}};
+  core::Ledger changed;
   for (const auto& row : replayed)
     if (row.outcome == pipeline::Replay::kChanged)
-      changed.rows.push_back(cells_of({row.before.candidate, row.after}));
+      changed.push_back({row.before.candidate, row.after});
   const auto count = [&](pipeline::Replay outcome) {
     return std::to_string(std::count_if(replayed.begin(), replayed.end(),
                                         [&](const auto& row) { return row.outcome == outcome; }));
@@ -118,7 +130,7 @@ void replay(const LedgerCommand& command) {
                  {"unmeasured", count(pipeline::Replay::kUnmeasured)},
                  {"refused by the graph of loops, not replayed", count(pipeline::Replay::kGraph)}});
   fmt::print("\n{}", report::funnel_text(report::funnel(rows_after(replayed))));
-  if (!changed.rows.empty()) fmt::print("\nJudged otherwise:\n{}", report::as_text(changed));
+  if (!changed.empty()) fmt::print("\nJudged otherwise:\n{}", lines_of(changed));
 }
 
 void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {

@@ -18,7 +18,7 @@ core::Evidence evidence(int num_inliers) {
 }
 
 core::LedgerRow judged(std::uint64_t id, const core::Evidence& evidence) {
-  return {candidate(id), decide(candidate(id), evidence, {}, {})};
+  return {candidate(id), verify::decide(candidate(id), evidence, {}, {})};
 }
 
 TEST(Replay, WithTheThresholdsOfTheRunNothingChanges) {
@@ -41,7 +41,8 @@ TEST(Replay, AThresholdMovesThoseBetweenTheOldAndTheNewOne) {
 
 TEST(Replay, WhatWasNeverMeasuredIsNotGuessed) {
   const core::Evidence alone{.similarity = 0.5};
-  const core::LedgerRow row{candidate(0), decide(candidate(0), alone, {}, {.min_similarity = 0.6})};
+  const core::LedgerRow row{candidate(0),
+                            verify::decide(candidate(0), alone, {}, {.min_similarity = 0.6})};
   EXPECT_EQ(replay({row}, {.min_similarity = 0.4})[0].outcome, Replay::kUnmeasured);
   EXPECT_EQ(replay({row}, {.min_similarity = 0.55})[0].outcome, Replay::kSame);
   EXPECT_EQ(replay({row}, {.min_similarity = 0.4, .require_geometry = false})[0].outcome,

@@ -13,7 +13,7 @@
 namespace samewhere::report {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;  // as in loops.cpp
 
 // One entry of the file. What is wrong with it comes out as a Json exception.
 class Entry {
