@@ -113,6 +113,10 @@ core::Ledger rows_after(const std::vector<pipeline::ReplayedRow>& replayed) {
 }
 
 void replay(const LedgerCommand& command) {
+  for (const auto& assignment : command.assignments)
+    if (!assignment.starts_with("verify."))
+      throw core::InputError("--set " + assignment +
+                             ": a replay has thresholds alone; expected verify.NAME=VALUE");
   const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
   const verify::Config config = pipeline::config_of_run(command.folder, command.assignments).verify;
   const auto replayed = pipeline::replay(ledger, config);

@@ -94,27 +94,25 @@ bool is_between(const core::Frame& frame, std::size_t first, std::size_t last) {
   return frame.id.index() >= first && frame.id.index() <= last;
 }
 
+std::optional<core::Frame> darkened(core::Frame frame, std::size_t first, std::size_t last) {
+  if (is_between(frame, first, last)) {
+    frame.images[0] = cv::Mat::zeros(frame.images[0].size(), frame.images[0].type());
+    frame.depth_m->setTo(0.0);
+  }
+  return frame;
+}
+
 TEST(Disturbance, InTwoSecondsOfDarkThereIsNoPoseAndThenThereIsARightOneAgain) {
-  const Outcome outcome = outcome_of([](core::Frame frame) {
-    if (is_between(frame, 50, 79)) {
-      frame.images[0] = cv::Mat::zeros(frame.images[0].size(), frame.images[0].type());
-      frame.depth_m->setTo(0.0);
-    }
-    return std::optional(frame);
-  });
+  const Outcome outcome =
+      outcome_of([](core::Frame frame) { return darkened(std::move(frame), 50, 79); });
   for (std::size_t i = 50; i <= 79; ++i) EXPECT_FALSE(outcome.is_measured[i]) << i;
   EXPECT_GE(outcome.num_measured, 80) << "of the 90 in light";
   EXPECT_EQ(outcome.num_right, outcome.num_measured);
 }
 
 TEST(Disturbance, WithDepthAMapThatIsLostBeforeItIsLargeIsGivenUpForANewOne) {
-  const Outcome outcome = outcome_of([](core::Frame frame) {
-    if (is_between(frame, 3, 80)) {
-      frame.images[0] = cv::Mat::zeros(frame.images[0].size(), frame.images[0].type());
-      frame.depth_m->setTo(0.0);
-    }
-    return std::optional(frame);
-  });
+  const Outcome outcome =
+      outcome_of([](core::Frame frame) { return darkened(std::move(frame), 3, 80); });
   for (std::size_t i = 0; i <= 80; ++i) EXPECT_FALSE(outcome.is_measured[i]) << i;
   for (std::size_t i = 81; i < kNumFrames; ++i) EXPECT_TRUE(outcome.is_measured[i]) << i;
 }
