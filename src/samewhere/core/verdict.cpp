@@ -17,10 +17,16 @@ std::string_view name_of(Refusal refusal) {
       return "inliers";
     case Refusal::kSpread:
       return "spread";
+    case Refusal::kPose:
+      return "pose";
     case Refusal::kAgreement:
       return "agreement";
     case Refusal::kOdometry:
       return "odometry";
+    case Refusal::kRival:
+      return "rival";
+    case Refusal::kSequence:
+      return "sequence";
     case Refusal::kGraph:
       return "graph";
     case Refusal::kWithdrawn:
@@ -46,7 +52,8 @@ std::string_view name_of(const Verdict& verdict) {
 
 std::string_view stage_of(const Verdict& verdict) {
   if (const auto* rejection = std::get_if<Rejection>(&verdict)) return name_of(rejection->stage);
-  return is_loop(verdict) ? "accepted" : "rivals";
+  if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return name_of(ambiguous->stage);
+  return "accepted";
 }
 
 std::string reason_of(const Verdict& verdict) {
@@ -54,8 +61,12 @@ std::string reason_of(const Verdict& verdict) {
   if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return ambiguous->reason;
   const Evidence& evidence = evidence_of(verdict);
   if (!evidence.geometry) return fmt::format("similarity {:.3f}", evidence.similarity);
-  return fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
-                     evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
+  std::string reason =
+      fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
+                  evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
+  if (evidence.sequence)
+    reason += fmt::format("; {} views in a row go on to match", evidence.sequence->num_views);
+  return reason;
 }
 
 }  // namespace samewhere::core

@@ -11,12 +11,14 @@
 
 namespace samewhere::core {
 
-// Two views that look alike, found by appearance only.
+// Two views that look alike, found by appearance only, or, foretold, because the views before them
+// matched: such a one may hang on a sequence, but proves nothing of it.
 struct Candidate {
   CandidateId id;
   FrameId query;
   FrameId match;            // older than query
   double similarity = 0.0;  // of the two descriptors, in [-1, 1]
+  bool is_foretold = false;
 };
 
 // What geometry says about a candidate.
@@ -42,11 +44,31 @@ struct OdometryEvidence {
       0.0;  // of the correction under the drift model; chi-square with 6 degrees of freedom
 };
 
+// The place where an earlier loop has put the query, and how far from there this one would put it.
+struct RivalEvidence {
+  FrameId frame;  // shows that place
+  double apart_m = 0.0;
+  double apart_rad = 0.0;
+  double mahalanobis_squared = 0.0;  // under the drift since that loop; 6 degrees of freedom
+};
+
+// What the views around the query say: whether they go on to match the views around the match.
+// Views are counted by what they show, so a camera that stands still sees one.
+struct SequenceEvidence {
+  int query_view = 0;
+  int match_view = 0;
+  int num_views = 0;     // of the longest sequence through the candidate, as far as it is known
+  int num_inliers = 0;   // of all of this sequence together
+  bool is_over = false;  // no later view can make it longer any more
+};
+
 // Everything measured about one candidate. A part that was not measured is absent.
 struct Evidence {
   double similarity = 0.0;
   std::optional<GeometryEvidence> geometry;
   std::optional<OdometryEvidence> odometry;
+  std::optional<RivalEvidence> rival;
+  std::optional<SequenceEvidence> sequence;
 };
 
 // Where in the funnel a candidate was refused, in the order of the checks. kGraph: the judge had
@@ -58,16 +80,19 @@ enum class Refusal {
   kMatches,
   kInliers,
   kSpread,
+  kPose,
   kAgreement,
   kOdometry,
+  kRival,
+  kSequence,
   kGraph,
   kWithdrawn
 };
 
 inline constexpr Refusal kAllRefusals[] = {
-    Refusal::kSimilarity, Refusal::kPause,  Refusal::kMatches,
-    Refusal::kInliers,    Refusal::kSpread, Refusal::kAgreement,
-    Refusal::kOdometry,   Refusal::kGraph,  Refusal::kWithdrawn};
+    Refusal::kSimilarity, Refusal::kPause,    Refusal::kMatches,   Refusal::kInliers,
+    Refusal::kSpread,     Refusal::kPose,     Refusal::kAgreement, Refusal::kOdometry,
+    Refusal::kRival,      Refusal::kSequence, Refusal::kGraph,     Refusal::kWithdrawn};
 
 std::string_view name_of(Refusal refusal);
 
@@ -96,13 +121,11 @@ struct Rejection {
   std::string reason;  // one sentence with the figure and the threshold
 };
 
-// Cannot tell yet: several places explain the view.
+// Cannot tell, or not yet: the views that follow decide.
 struct Ambiguous {
   CandidateId candidate;
   Evidence evidence;
-  std::vector<CandidateId> rivals;
-  int expires_after_keyframes = 0;
-  double expires_after_m = 0.0;
+  Refusal stage = Refusal::kSequence;  // the check that found no answer
   std::string reason;
 };
 

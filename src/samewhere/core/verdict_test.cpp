@@ -38,7 +38,7 @@ TEST(Verdict, AMaybeIsNeitherALoopNorANo) {
   ambiguous.reason = "two places fit";
   const Verdict verdict = ambiguous;
   EXPECT_EQ(name_of(verdict), "AMBIGUOUS");
-  EXPECT_EQ(stage_of(verdict), "rivals");
+  EXPECT_EQ(stage_of(verdict), "sequence");
   EXPECT_EQ(reason_of(verdict), "two places fit");
   EXPECT_FALSE(is_loop(verdict));
 }

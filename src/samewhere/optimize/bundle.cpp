@@ -7,6 +7,7 @@
 namespace samewhere::optimize {
 namespace {
 
+constexpr int kMinObservations = 12;             // that hold a camera; three points are its freedom
 constexpr std::ptrdiff_t kMaxDenseCameras = 60;  // beyond, the reduced system is mostly zeros
 
 BundleResidual residual(const BundleState& state, const BundleObservation& o) {
@@ -41,6 +42,26 @@ std::vector<bool> of_supported_points(const BundleProblem& problem, std::vector<
   }
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (support[static_cast<std::size_t>(observations[i].point)] < 2) is_used[i] = false;
+  }
+  return is_used;
+}
+
+// A camera that hardly any observation holds would slide anywhere: it goes back to where it was and
+// sits out.
+std::vector<bool> of_held_cameras(BundleState& state, std::vector<bool> is_used) {
+  const auto& cameras = state.problem->cameras;
+  const auto& observations = state.problem->observations;
+  std::vector<int> num_used(cameras.size(), 0);
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    num_used[static_cast<std::size_t>(observations[i].camera)] += is_used[i] ? 1 : 0;
+  const auto is_held = [&](std::size_t camera) {
+    return cameras[camera].is_fixed || num_used[camera] >= kMinObservations;
+  };
+  for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
+    if (!is_held(camera)) state.camera_from_world[camera] = cameras[camera].camera_from_world;
+  }
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (!is_held(static_cast<std::size_t>(observations[i].camera))) is_used[i] = false;
   }
   return is_used;
 }
@@ -86,7 +107,8 @@ BundleResult solve_bundle(const BundleProblem& problem, const Config& config) {
   BundleResult result;
   state.is_used = of_supported_points(problem, visible(state));
   result.num_iterations += minimise(state, true, config.bundle_iterations);
-  state.is_used = of_supported_points(problem, inliers(state));
+  state.is_used = of_supported_points(
+      problem, of_held_cameras(state, of_supported_points(problem, inliers(state))));
   result.num_iterations += minimise(state, false, config.bundle_iterations);
   result.is_inlier = inliers(state);
   result.camera_from_world = std::move(state.camera_from_world);

@@ -39,7 +39,8 @@ struct BundleResult {
 // Poses and points that minimise the reprojection errors, eq. (23) as a sum of squares. Two rounds
 // of Levenberg and Marquardt with Schur elimination of the points (Triggs et al. 2000): with a
 // Huber loss, then, without it, on what the first found to be inliers. A point that no depth and no
-// second camera supports says nothing about the poses: it sits out and stays. Without a free camera
+// second camera supports says nothing about the poses: it sits out and stays; so does a camera of
+// whose observations fewer than a dozen are inliers of the first round. Without a free camera
 // only the points move. The gauge is the caller's: fix one camera, or two where no observation has
 // depth. Throws ContractError without any fixed camera, and for an observation of what is not
 // there.

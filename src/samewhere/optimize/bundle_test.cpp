@@ -51,6 +51,27 @@ TEST(Bundle, AnalyticJacobiansEqualNumericOnes) {
   }
 }
 
+TEST(Bundle, ACameraThatHardlyAnythingHoldsStaysWhereItWas) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    core::Random random(seed);
+    const BundleProblem truth = test_scene({}, random);
+    BundleProblem scene = disturbed(truth, 0.02, 0.05, random);
+    constexpr int kLost = 4;
+    int num_seen = 0;
+    for (auto& o : scene.observations) {  // all but five show something else
+      if (o.camera == kLost && num_seen++ >= 5)
+        o.seen.undistorted_px = {random.uniform(0, 640), random.uniform(0, 480)};
+    }
+    const BundleResult result = solve_bundle(scene, {});
+    EXPECT_EQ(result.camera_from_world[kLost].matrix(),
+              scene.cameras[kLost].camera_from_world.matrix())
+        << "seed " << seed;
+    const core::Rigid3 neighbour =
+        inverse(truth.cameras[3].camera_from_world) * result.camera_from_world[3];
+    EXPECT_LT(core::log_r3so3(neighbour).norm(), 0.02) << "seed " << seed;
+  }
+}
+
 TEST(Bundle, DepthAndOneFixedCameraFindADisturbedSceneAgain) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
@@ -65,7 +86,7 @@ TEST(Bundle, DepthAndOneFixedCameraFindADisturbedSceneAgain) {
 TEST(Bundle, PixelsAloneAndTwoFixedCamerasFindADisturbedSceneAgain) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
-    const BundleProblem truth = test_scene({.num_fixed = 2, .has_depth = false}, random);
+    const BundleProblem truth = test_scene({}, random);
     const BundleResult result =
         solve_bundle(disturbed(truth, 0.01, 0.03, random), {.bundle_iterations = 20});
     EXPECT_LT(worst_pose_error(truth, result), 0.02) << "seed " << seed;

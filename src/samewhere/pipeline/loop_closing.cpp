@@ -4,6 +4,7 @@
 #include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/measure_rival.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -26,14 +27,16 @@ class Places {
 
   MapKnowledge knowledge(const Config& config) const {
     MapKnowledge knowledge;
-    knowledge.measure_odometry = [this, &config](const core::Candidate& candidate,
+    const double scale_sigma = config.optimize.odometry_scale_sigma;
+    knowledge.measure_odometry = [=, this, &config](const core::Candidate& candidate,
+                                                    const core::Sim3& match_from_query) {
+      return std::optional(verify::measure_odometry(map_, claim_of(candidate, match_from_query),
+                                                    scale_sigma, config.verify));
+    };
+    knowledge.measure_rival = [=, this, &config](const core::Candidate& candidate,
                                                  const core::Sim3& match_from_query) {
-      scene::LoopEdge claim;
-      claim.query = at(candidate.query);
-      claim.match = at(candidate.match);
-      claim.match_from_query = rigid_part(match_from_query);
-      return std::optional(verify::measure_odometry(
-          map_, claim, config.optimize.odometry_scale_sigma, config.verify));
+      return verify::measure_rival(map_, claim_of(candidate, match_from_query), scale_sigma,
+                                   config.verify);
     };
     if (is_without_depth_)
       knowledge.view_of = [this](core::FrameId frame) {
@@ -49,6 +52,15 @@ class Places {
   }
 
  private:
+  scene::LoopEdge claim_of(const core::Candidate& candidate,
+                           const core::Sim3& match_from_query) const {
+    scene::LoopEdge claim;
+    claim.query = at(candidate.query);
+    claim.match = at(candidate.match);
+    claim.match_from_query = rigid_part(match_from_query);
+    return claim;
+  }
+
   // Without depth, a culled keyframe knows nothing of how far away things are; what it hangs on
   // does.
   core::KeyframeId at(core::FrameId frame) const {

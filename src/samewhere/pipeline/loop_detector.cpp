@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <samewhere/core/similarity.hpp>
 #include <samewhere/pipeline/loop_detector.hpp>
 
 namespace samewhere::pipeline {
@@ -6,7 +11,10 @@ LoopDetector::LoopDetector(const Config& config)
     : describer_(describe::make_describer(config.describe)),
       retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)),
       settings_{config.verify, config.features, config.optimize,
-                static_cast<std::uint64_t>(config.seed)} {}
+                static_cast<std::uint64_t>(config.seed)},
+      waiting_(config.verify),
+      numbered_(config.features, config.verify.same_view_ratio),
+      window_frames_(static_cast<std::uint64_t>(config.retrieve.window_frames)) {}
 
 std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const features::View& view,
                                                 const MapKnowledge& map,
@@ -24,7 +32,7 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
   }
   std::erase_if(candidates, [&](const core::Candidate& c) { return is_connected(c.match); });
   const core::ScopedTimer timer(timings, "verify");
-  return judge(candidates, view, map);
+  return judge(descriptor, candidates, view, map);
 }
 
 std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
@@ -35,10 +43,13 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
   constexpr int kNoWindow = 0;
   const MapKnowledge nothing{
       [](const core::Candidate&, const core::Sim3&) { return std::nullopt; }};
+  verify::Config looks_alone = settings_.verify;
+  looks_alone.min_views = 1;
+  looks_alone.require_pose = false;  // whoever tracks the view among the place's points finds it
   std::vector<core::LedgerRow> rows;
   for (const auto& candidate :
        retrieve::compare(descriptor, retriever_.search(descriptor, kNoWindow)))
-    rows.push_back(judged(candidate, view, nothing));
+    rows.push_back(judged(candidate, view, nothing, looks_alone));
   return rows;
 }
 
@@ -57,33 +68,76 @@ std::vector<retrieve::FoundView> LoopDetector::search(const core::Descriptor& de
   return found;
 }
 
-std::vector<core::LedgerRow> LoopDetector::judge(const std::vector<core::Candidate>& candidates,
+std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descriptor,
+                                                 const std::vector<core::Candidate>& candidates,
                                                  const features::View& view,
                                                  const MapKnowledge& map) {
+  views_.emplace(view.frame, view);
+  const bool may_wait = may_need_sequences(settings_.verify);
+  if (may_wait) numbered_.add(view, descriptor);
   std::vector<core::LedgerRow> rows;
   for (const core::Candidate& candidate : candidates) {
-    rows.push_back(judged(candidate, view, map));
-    if (core::is_loop(rows.back().verdict)) history_.last_loop_query = view.frame;
+    rows.push_back(judged(candidate, view, map, settings_.verify));
+    wait_or_pause(rows.back());
   }
-  views_.emplace(view.frame, view);
+  if (!may_wait) return rows;
+  for (const core::Candidate& candidate : foretold(descriptor, candidates)) {
+    rows.push_back(judged(candidate, views_.at(candidate.query), map, settings_.verify));
+    wait_or_pause(rows.back());
+  }
+  auto settled = waiting_.settle(numbered_.number_of(view.frame));
+  std::move(settled.begin(), settled.end(), std::back_inserter(rows));
   return rows;
 }
 
+void LoopDetector::wait_or_pause(const core::LedgerRow& row) {
+  if (core::is_loop(row.verdict)) history_.last_loop_query = row.candidate.query;
+  const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
+  if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
+    waiting_.add(row.candidate, ambiguous->evidence);
+}
+
+std::vector<core::Candidate> LoopDetector::foretold(const core::Descriptor& descriptor,
+                                                    const std::vector<core::Candidate>& known) {
+  const int now = numbered_.number_of(descriptor.frame);
+  std::vector<core::Candidate> candidates;
+  for (const verify::ViewPair& views : waiting_.foretold(now)) {
+    const auto* match = numbered_.at(views.match);
+    const auto* query = views.query == now ? &descriptor : numbered_.at(views.query);
+    if (query == nullptr || match == nullptr) continue;
+    const bool is_recent = query->frame.index() <= match->frame.index() + window_frames_;
+    const bool is_known = std::any_of(known.begin(), known.end(), [&](const core::Candidate& c) {
+      return c.query == query->frame && c.match == match->frame;
+    });
+    if (is_recent || is_known) continue;
+    candidates.push_back({.query = query->frame,
+                          .match = match->frame,
+                          .similarity = core::ncc(query->unit, match->unit),
+                          .is_foretold = true});
+  }
+  return candidates;
+}
+
 core::LedgerRow LoopDetector::judged(core::Candidate candidate, const features::View& view,
-                                     const MapKnowledge& map) {
+                                     const MapKnowledge& map, const verify::Config& config) {
   candidate.id = core::CandidateId(num_candidates_++, view.frame.session());
-  return {candidate, verdict_on(candidate, view, map)};
+  return {candidate, verdict_on(candidate, view, map, config)};
 }
 
 core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const features::View& view,
-                                       const MapKnowledge& map) const {
+                                       const MapKnowledge& map,
+                                       const verify::Config& config) const {
   core::Evidence evidence{.similarity = candidate.similarity};
-  if (auto refused = verify::refuse_early(candidate, evidence, history_, settings_.verify))
-    return *refused;
+  if (auto refused = verify::refuse_early(candidate, evidence, history_, config)) return *refused;
   evidence.geometry = measure_geometry(candidate, view, map.view_of);
+  if (needs_sequence(*evidence.geometry, config))
+    evidence.sequence = {.query_view = numbered_.number_of(candidate.query),
+                         .match_view = numbered_.number_of(candidate.match)};
   if (evidence.geometry->match_from_query)
     evidence.odometry = map.measure_odometry(candidate, *evidence.geometry->match_from_query);
-  return verify::decide(candidate, evidence, history_, settings_.verify);
+  if (evidence.odometry && map.measure_rival)
+    evidence.rival = map.measure_rival(candidate, *evidence.geometry->match_from_query);
+  return verify::decide(candidate, evidence, history_, config);
 }
 
 core::GeometryEvidence LoopDetector::measure_geometry(const core::Candidate& candidate,

@@ -12,14 +12,20 @@
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/features/features.hpp>
 #include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/numbered_views.hpp>
 #include <samewhere/retrieve/retriever.hpp>
 #include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/measure.hpp>
+#include <samewhere/verify/waiting.hpp>
 
 namespace samewhere::pipeline {
 
 // What odometry says of a relative pose that geometry found; nothing where there is no odometry.
 using MeasureOdometry = std::function<std::optional<core::OdometryEvidence>(
+    const core::Candidate& candidate, const core::Sim3& match_from_query)>;
+
+// What an earlier loop says against it; nothing if there was none.
+using MeasureRival = std::function<std::optional<core::RivalEvidence>(
     const core::Candidate& candidate, const core::Sim3& match_from_query)>;
 
 // Whether the map holds the two views together already, by landmarks that both show: a loop between
@@ -32,6 +38,7 @@ using ViewOf = std::function<features::View(core::FrameId frame)>;
 // What the map says to the judge.
 struct MapKnowledge {
   MeasureOdometry measure_odometry;
+  MeasureRival measure_rival = {};
   ViewOf view_of = {};  // of a camera without depth: so its views have some, each in its own scale
 };
 
@@ -66,14 +73,22 @@ class LoopDetector {
   // thread of its own, with the same result.
   core::Descriptor describe(core::FrameId frame, const cv::Mat& image);
   std::vector<retrieve::FoundView> search(const core::Descriptor& descriptor);
-  std::vector<core::LedgerRow> judge(const std::vector<core::Candidate>& candidates,
+  std::vector<core::LedgerRow> judge(const core::Descriptor& descriptor,
+                                     const std::vector<core::Candidate>& candidates,
                                      const features::View& view, const MapKnowledge& map);
 
+  // Nothing comes any more: the last verdicts on whoever still waits.
+  std::vector<core::LedgerRow> settle_all() { return waiting_.settle_all(); }
+
  private:
+  void wait_or_pause(const core::LedgerRow& row);
+  // Candidates that no search found: what the view should show if a sequence goes on.
+  std::vector<core::Candidate> foretold(const core::Descriptor& descriptor,
+                                        const std::vector<core::Candidate>& known);
   core::LedgerRow judged(core::Candidate candidate, const features::View& view,
-                         const MapKnowledge& map);
+                         const MapKnowledge& map, const verify::Config& config);
   core::Verdict verdict_on(const core::Candidate& candidate, const features::View& view,
-                           const MapKnowledge& map) const;
+                           const MapKnowledge& map, const verify::Config& config) const;
 
   core::GeometryEvidence measure_geometry(const core::Candidate& candidate,
                                           const features::View& view, const ViewOf& view_of) const;
@@ -84,6 +99,9 @@ class LoopDetector {
 
   verify::MeasureSettings settings_;  // from here on of judge()
   verify::History history_;
+  verify::Waiting waiting_;
+  NumberedViews numbered_;
+  std::uint64_t window_frames_;
   std::map<core::FrameId, features::View> views_;
   std::uint64_t num_candidates_ = 0;
 };

@@ -31,8 +31,10 @@ std::vector<std::string> stages(LoopDetector& detector, std::uint64_t query) {
   const std::vector<core::Candidate> candidates = {
       candidate(query, 0, 0.9), candidate(query, 1, 0.8), candidate(query, 2, 0.6)};
   std::vector<std::string> stages;
-  for (const auto& row : detector.judge(query < 3 ? std::vector<core::Candidate>() : candidates,
-                                        blank_view(query), {without_odometry})) {
+  const core::Descriptor unused{.frame = core::FrameId(query), .unit = {}};
+  for (const auto& row :
+       detector.judge(unused, query < 3 ? std::vector<core::Candidate>() : candidates,
+                      blank_view(query), {without_odometry})) {
     stages.emplace_back(core::stage_of(row.verdict));
   }
   return stages;

@@ -7,6 +7,7 @@
 #include <samewhere/features/orb.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/recognition.hpp>
+#include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 
 namespace samewhere::pipeline {
@@ -92,18 +93,30 @@ void Recognition::judge(const SearchedFrame& searched) {
     candidates = retrieve::compare(descriptor, searched.found);
   }
   const core::ScopedTimer timer(judge_timings_, "verify");
-  const auto rows = detector_.judge(candidates, view, {without_odometry});
-  report::RunRecord& record = found_.record;
-  record.thumbnails[view.frame] = thumbnail;
-  record.ledger.insert(record.ledger.end(), rows.begin(), rows.end());
-  const core::LedgerRow* best = best_of_query(rows, config_.verify);
-  if (best == nullptr) return;
-  const double score = verify::score(core::evidence_of(best->verdict), config_.verify);
-  found_.matches.push_back({best->candidate.query, best->candidate.match, score});
-  if (core::is_loop(best->verdict)) found_.accepted.push_back(found_.matches.back());
+  found_.record.thumbnails[view.frame] = thumbnail;
+  keep(detector_.judge(descriptor, candidates, view, {without_odometry}));
+}
+
+void Recognition::keep(const std::vector<core::LedgerRow>& rows) {
+  core::Ledger& ledger = found_.record.ledger;
+  ledger.insert(ledger.end(), rows.begin(), rows.end());
+}
+
+void Recognition::find_best_of_queries() {
+  std::map<core::FrameId, std::vector<core::LedgerRow>> rows_of;
+  for (const core::LedgerRow* row : report::final_rows(found_.record.ledger))
+    rows_of[row->candidate.query].push_back(*row);
+  for (const auto& [query, rows] : rows_of) {
+    const core::LedgerRow& best = *best_of_query(rows, config_.verify);
+    const double score = verify::score(core::evidence_of(best.verdict), config_.verify);
+    found_.matches.push_back({query, best.candidate.match, score});
+    if (core::is_loop(best.verdict)) found_.accepted.push_back(found_.matches.back());
+  }
 }
 
 void Recognition::report_to(RunOutcome& outcome) && {
+  keep(detector_.settle_all());
+  find_best_of_queries();
   core::Timings timings;
   for (const core::Timings* step : {&describe_timings_, &search_timings_, &judge_timings_}) {
     timings.add(*step);

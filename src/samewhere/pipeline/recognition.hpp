@@ -59,6 +59,8 @@ class Recognition {
   DescribedFrame describe(const core::Frame& frame);
   SearchedFrame search(DescribedFrame described);
   void judge(const SearchedFrame& searched);
+  void keep(const std::vector<core::LedgerRow>& rows);
+  void find_best_of_queries();
 
   Config config_;
   LoopDetector detector_;

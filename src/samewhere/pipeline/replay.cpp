@@ -1,5 +1,9 @@
+#include <map>
+#include <utility>
+
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/verify/decide.hpp>
+#include <samewhere/verify/waiting.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -26,17 +30,64 @@ Replay outcome_of(const core::LedgerRow& before, const core::Verdict& after,
   return core::is_loop(before.verdict) == core::is_loop(after) ? Replay::kSame : Replay::kChanged;
 }
 
+// What the views around a candidate say depends on which other candidates pass: forgotten, to be
+// found anew.
+core::Evidence without_neighbours(core::Evidence evidence) {
+  if (evidence.sequence) {
+    evidence.sequence->num_views = 0;
+    evidence.sequence->num_inliers = 0;
+    evidence.sequence->is_over = false;
+  }
+  return evidence;
+}
+
+// Judges in the order of the run.
+class SecondJudge {
+ public:
+  explicit SecondJudge(const verify::Config& config) : config_(config), waiting_(config) {}
+
+  void judge(const core::LedgerRow& row) {
+    const core::Evidence evidence = without_neighbours(core::evidence_of(row.verdict));
+    if (evidence.sequence && evidence.sequence->query_view > view_) {
+      settle(waiting_.settle(view_));
+      view_ = evidence.sequence->query_view;
+    }
+    core::Verdict verdict = decide(row.candidate, evidence, history_, config_);
+    if (core::is_loop(verdict)) history_.last_loop_query = row.candidate.query;
+    const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
+    if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
+      waiting_.add(row.candidate, evidence);
+    verdicts_.insert_or_assign(row.candidate.id, std::move(verdict));
+  }
+
+  std::map<core::CandidateId, core::Verdict> verdicts() && {
+    settle(waiting_.settle_all());
+    return std::move(verdicts_);
+  }
+
+ private:
+  void settle(const std::vector<core::LedgerRow>& rows) {
+    for (const core::LedgerRow& row : rows)
+      verdicts_.insert_or_assign(row.candidate.id, row.verdict);
+  }
+
+  verify::Config config_;
+  verify::History history_;
+  verify::Waiting waiting_;
+  int view_ = 0;
+  std::map<core::CandidateId, core::Verdict> verdicts_;
+};
+
 }  // namespace
 
 std::vector<ReplayedRow> replay(const core::Ledger& ledger, const verify::Config& config) {
+  SecondJudge judge(config);
+  for (const core::LedgerRow& row : ledger) judge.judge(row);
+  const auto verdicts = std::move(judge).verdicts();
   std::vector<ReplayedRow> rows;
-  verify::History history;
   for (const core::LedgerRow& row : ledger) {
-    ReplayedRow replayed{row,
-                         decide(row.candidate, core::evidence_of(row.verdict), history, config)};
-    if (core::is_loop(replayed.after)) history.last_loop_query = row.candidate.query;
-    replayed.outcome = outcome_of(row, replayed.after, config);
-    rows.push_back(std::move(replayed));
+    const core::Verdict& after = verdicts.at(row.candidate.id);
+    rows.push_back({row, after, outcome_of(row, after, config)});
   }
   return rows;
 }

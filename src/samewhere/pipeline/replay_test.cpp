@@ -12,8 +12,11 @@ core::Candidate candidate(std::uint64_t id, double similarity = 0.5) {
 
 core::Evidence evidence(int num_inliers) {
   core::Evidence evidence{.similarity = 0.5};
-  evidence.geometry = core::GeometryEvidence{
-      .num_matches = 200, .num_inliers = num_inliers, .inlier_ratio = 0.5, .spread_ratio = 0.5};
+  evidence.geometry = core::GeometryEvidence{.num_matches = 200,
+                                             .num_inliers = num_inliers,
+                                             .inlier_ratio = 0.5,
+                                             .spread_ratio = 0.5,
+                                             .match_from_query = core::Sim3{}};
   return evidence;
 }
 
@@ -56,6 +59,32 @@ TEST(Replay, ThePauseFollowsTheNewVerdicts) {
   EXPECT_TRUE(core::is_loop(paused[0].after));
   EXPECT_FALSE(core::is_loop(paused[1].after));
   EXPECT_TRUE(core::is_loop(paused[2].after));
+}
+
+TEST(Replay, ASequenceIsCountedAnewFromWhoeverPassesNow) {
+  verify::Config few;
+  few.require_pose = false;
+  few.min_views = 3;
+  core::Ledger ledger;
+  for (std::uint64_t id = 0; id < 4; ++id) {
+    core::Evidence alone = evidence(id == 1 ? 25 : 60);
+    alone.geometry->match_from_query.reset();
+    alone.sequence = core::SequenceEvidence{.query_view = 50 + static_cast<int>(id),
+                                            .match_view = 10 + static_cast<int>(id),
+                                            .num_views = 4,
+                                            .num_inliers = 205,
+                                            .is_over = true};
+    ledger.push_back({candidate(id), verify::decide(candidate(id), alone, {}, few)});
+    EXPECT_TRUE(core::is_loop(ledger.back().verdict));
+  }
+  for (const auto& row : replay(ledger, few)) EXPECT_TRUE(core::is_loop(row.after));
+  few.min_inliers_in_sequence = 30;  // three are left
+  const auto stricter = replay(ledger, few);
+  EXPECT_EQ(core::stage_of(stricter[1].after), "inliers");
+  EXPECT_EQ(core::evidence_of(stricter[3].after).sequence->num_views, 3);
+  EXPECT_EQ(stricter[3].outcome, Replay::kSame);
+  few.min_views = 4;
+  EXPECT_EQ(core::stage_of(replay(ledger, few)[0].after), "sequence");
 }
 
 TEST(Replay, WhatTheGraphRefusedStaysRefused) {

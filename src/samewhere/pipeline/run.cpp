@@ -17,6 +17,7 @@
 #include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/pipeline/run.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 
 namespace samewhere::pipeline {
@@ -240,7 +241,8 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
 RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given) {
   const auto source = read_ahead(std::move(unbuffered));
   const core::Truth truth = source->truth();
-  const Config config = with_window_in_frames(given, source->info());
+  Config config = with_window_in_frames(given, source->info());
+  config.verify.require_pose = false;  // there is no map that could use one
   RunOutcome outcome = start_outcome(config, source->info());
   Recognition recognition(config);
   FrameFeed feed(*source, outcome);
@@ -250,8 +252,9 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
   report::RunRecord& record = outcome.record;
   feed.report();
   drop_unused_thumbnails(record);
-  const RecognitionFindings findings{static_cast<int>(record.ledger.size()), outcome.matches,
-                                     outcome.accepted, config.retrieve.window_frames};
+  const RecognitionFindings findings{static_cast<int>(report::final_rows(record.ledger).size()),
+                                     outcome.matches, outcome.accepted,
+                                     config.retrieve.window_frames};
   const auto measured = figures_of(evaluate_recognition(findings, truth));
   record.figures.insert(record.figures.begin(), measured.begin(), measured.end());
   if (record.ledger.empty()) {

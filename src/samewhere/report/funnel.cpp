@@ -51,10 +51,16 @@ std::string_view question_of(core::Refusal refusal) {
       return "do enough matches agree on one geometry?";
     case core::Refusal::kSpread:
       return "are they spread over the image?";
+    case core::Refusal::kPose:
+      return "do they give a relative pose, where one is needed?";
     case core::Refusal::kAgreement:
       return "do both views find the same relative pose?";
     case core::Refusal::kOdometry:
       return "does it fit the path travelled?";
+    case core::Refusal::kRival:
+      return "has no loop put the query elsewhere already?";
+    case core::Refusal::kSequence:
+      return "do the views around it go on to match, where nothing else can tell?";
     case core::Refusal::kGraph:
       return "does it fit the loops before it?";
     case core::Refusal::kWithdrawn:

@@ -18,8 +18,8 @@ TEST(Funnel, CountsWhoArrivesAndWhoIsRefusedAtEachCheck) {
   EXPECT_EQ(found.num_accepted, 3);
   EXPECT_EQ(found.num_ambiguous, 1);
   ASSERT_EQ(found.rows.size(), std::size(core::kAllRefusals));
-  const std::vector<int> arrived = {35, 15, 15, 9, 5, 5, 5, 4, 4};
-  const std::vector<int> refused = {20, 0, 6, 4, 0, 0, 1, 0, 0};
+  const std::vector<int> arrived = {35, 15, 15, 9, 5, 5, 5, 5, 4, 4, 4, 4};
+  const std::vector<int> refused = {20, 0, 6, 4, 0, 0, 0, 1, 0, 0, 0, 0};
   ASSERT_EQ(arrived.size(), found.rows.size());
   for (std::size_t i = 0; i < found.rows.size(); ++i) {
     EXPECT_EQ(found.rows[i].stage, core::kAllRefusals[i]);
@@ -68,9 +68,10 @@ TEST(FunnelText, HasEveryCheckAndBothOutcomesInLine) {
     EXPECT_NE(line[22], ' ') << "the second column ends elsewhere: " << line;
     names.push_back(line.substr(2, line.find(' ', 2) - 2));
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"check", "similarity", "pause", "matches", "inliers",
-                                             "spread", "agreement", "odometry", "graph",
-                                             "withdrawn", "ambiguous", "accepted"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"check", "similarity", "pause", "matches", "inliers",
+                                      "spread", "pose", "agreement", "odometry", "rival",
+                                      "sequence", "graph", "withdrawn", "ambiguous", "accepted"}));
   EXPECT_TRUE(text.ends_with("\n"));
 }
 

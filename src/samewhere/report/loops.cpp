@@ -40,6 +40,18 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "correction_rad", evidence.odometry->correction_rad);
     add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
   }
+  if (evidence.rival) {
+    scores["rival"] = evidence.rival->frame.index();
+    add_score(scores, "rival_apart_m", evidence.rival->apart_m);
+    add_score(scores, "rival_apart_rad", evidence.rival->apart_rad);
+    add_score(scores, "rival_mahalanobis_squared", evidence.rival->mahalanobis_squared);
+  }
+  if (evidence.sequence) {
+    scores["query_view"] = evidence.sequence->query_view;
+    scores["match_view"] = evidence.sequence->match_view;
+    scores["num_sequence_views"] = evidence.sequence->num_views;
+    scores["num_sequence_inliers"] = evidence.sequence->num_inliers;
+  }
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
   if (loop != nullptr && loop->scale_is_free && loop->match_from_query)
     add_score(scores, "scale", loop->match_from_query->scale);
@@ -55,10 +67,12 @@ Json pose_of(const core::Verdict& verdict) {
 }
 
 Json entry_of(const core::LedgerRow& row) {
-  return {{"query", row.candidate.query.index()},    {"match", row.candidate.match.index()},
-          {"verdict", core::name_of(row.verdict)},   {"stage", core::stage_of(row.verdict)},
-          {"reason", core::reason_of(row.verdict)},  {"scores", scores_of(row.verdict)},
-          {"match_from_query", pose_of(row.verdict)}};
+  Json entry = {{"query", row.candidate.query.index()},    {"match", row.candidate.match.index()},
+                {"verdict", core::name_of(row.verdict)},   {"stage", core::stage_of(row.verdict)},
+                {"reason", core::reason_of(row.verdict)},  {"scores", scores_of(row.verdict)},
+                {"match_from_query", pose_of(row.verdict)}};
+  if (row.candidate.is_foretold) entry["is_foretold"] = true;
+  return entry;
 }
 
 // A name that is no UTF-8 must not cost the whole text.

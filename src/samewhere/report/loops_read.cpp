@@ -20,7 +20,7 @@ class Entry {
  public:
   Entry(const Json& json, std::size_t position) : json_(json), scores_(json.at("scores")) {
     row_.candidate = {core::CandidateId(position), frame("query"), frame("match"),
-                      scores_.at("similarity").get<double>()};
+                      scores_.at("similarity").get<double>(), json.value("is_foretold", false)};
   }
 
   core::LedgerRow row() && {
@@ -33,8 +33,7 @@ class Entry {
       loop.scale_is_free = scores_.contains("scale");
       row_.verdict = loop;
     } else if (verdict == "AMBIGUOUS") {
-      row_.verdict = core::Ambiguous{
-          .candidate = row_.candidate.id, .evidence = evidence, .rivals = {}, .reason = reason};
+      row_.verdict = core::Ambiguous{row_.candidate.id, evidence, stage(), reason};
     } else {
       row_.verdict = core::Rejection{row_.candidate.id, evidence, stage(), reason};
     }
@@ -77,7 +76,21 @@ class Entry {
     if (const auto squared = score("mahalanobis_squared"))
       evidence.odometry = {score("correction_m").value_or(0.0),
                            score("correction_rad").value_or(0.0), *squared};
+    if (scores_.contains("rival"))
+      evidence.rival = {core::FrameId(scores_.at("rival").get<std::uint64_t>()),
+                        score("rival_apart_m").value_or(0.0),
+                        score("rival_apart_rad").value_or(0.0),
+                        score("rival_mahalanobis_squared").value_or(0.0)};
+    if (scores_.contains("query_view")) evidence.sequence = sequence();
     return evidence;
+  }
+
+  core::SequenceEvidence sequence() const {
+    return {.query_view = scores_.at("query_view").get<int>(),
+            .match_view = scores_.at("match_view").get<int>(),
+            .num_views = scores_.at("num_sequence_views").get<int>(),
+            .num_inliers = scores_.at("num_sequence_inliers").get<int>(),
+            .is_over = json_.at("verdict") != "AMBIGUOUS"};
   }
 
   core::GeometryEvidence geometry() const {

@@ -56,6 +56,25 @@ TEST_F(LoopsRead, APoseThatOneViewAloneFindsStaysApartWithoutEnd) {
             std::numeric_limits<double>::infinity());
 }
 
+TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
+  core::Evidence waiting = evidence(0.8, 100, 50);
+  waiting.sequence =
+      core::SequenceEvidence{.query_view = 9, .match_view = 2, .num_views = 5, .num_inliers = 200};
+  core::Candidate about = candidate(0, 9, 2, 0.8);
+  about.is_foretold = true;
+  const core::Ledger found = read(loops_json(
+      {{about, core::Ambiguous{.candidate = about.id, .evidence = waiting, .reason = "so far"}}}));
+  EXPECT_EQ(core::reason_of(found.at(0).verdict), "so far");
+  const auto& sequence = core::evidence_of(found.at(0).verdict).sequence;
+  ASSERT_TRUE(sequence);
+  EXPECT_EQ(sequence->query_view, 9);
+  EXPECT_EQ(sequence->match_view, 2);
+  EXPECT_EQ(sequence->num_views, 5);
+  EXPECT_EQ(sequence->num_inliers, 200);
+  EXPECT_FALSE(sequence->is_over);
+  EXPECT_TRUE(found.at(0).candidate.is_foretold);
+}
+
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})

@@ -15,12 +15,19 @@ struct Config {
   int min_matches = 20;
   int min_inliers = 40;
   double min_spread_ratio = 0.12;
+  bool require_pose = true;
   double max_disagreement_m = 0.15;
   double max_disagreement_rad = 0.05;
   double max_error_px = 4.0;
   double refine_radius_px = 6.0;
   int ransac_iterations = 500;
+  int min_views = 10;
+  int min_inliers_in_sequence = 20;
+  int max_view_gap = 3;
+  int wait_views = 20;
+  double same_view_ratio = 0.15;
   double max_odometry_chi_square = 30.0;
+  double max_rival_chi_square = 100.0;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
 };
@@ -46,6 +53,10 @@ inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
         {.help = "share of the picture's 8 x 8 cells that inliers must cover",
          .min = 0.0,
          .max = 1.0});
+  visit(
+      "require_pose", config.require_pose,
+      {.help = "candidates without a relative pose are refused: nothing but their looks speaks for "
+               "them; recognition alone (`loops`) and who is lost do not ask"});
   visit("max_disagreement_m", config.max_disagreement_m,
         {.help =
              "the pose from the query's depth and that from the match's may differ by this, metres",
@@ -53,6 +64,25 @@ inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
          .max = 100.0});
   visit("max_disagreement_rad", config.max_disagreement_rad,
         {.help = "the same, radians", .min = 0.001, .max = 3.2});
+}
+
+inline void visit_sequence(Config& config, core::FieldVisitor& visit) {
+  visit("min_views", config.min_views,
+        {.help = "recognition alone, where no map and no path travelled can tell: as many views in "
+                 "a row must go on to match; 1: each view speaks for itself",
+         .min = 1,
+         .max = 1000});
+  visit("min_inliers_in_sequence", config.min_inliers_in_sequence,
+        {.help = "each of them with so many geometric inliers", .min = 7, .max = 100000});
+  visit("max_view_gap", config.max_view_gap,
+        {.help = "a sequence goes on over so many views", .min = 1, .max = 100});
+  visit("wait_views", config.wait_views,
+        {.help = "views after which who still waits is refused", .min = 1, .max = 1000});
+  visit(
+      "same_view_ratio", config.same_view_ratio,
+      {.help = "a frame that shares so many of its features with the last view is still that view",
+       .min = 0.0,
+       .max = 1.0});
 }
 
 inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
@@ -69,6 +99,11 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
                  "of freedom",
          .min = 1.0,
          .max = 1e9});
+  visit("max_rival_chi_square", config.max_rival_chi_square,
+        {.help = "the same from where the last loop has put the camera, under the drift since then "
+                 "alone: beyond, two places explain the view",
+         .min = 1.0,
+         .max = 1e9});
   visit("loop_sigma_m", config.loop_sigma_m,
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
   visit("loop_sigma_rad", config.loop_sigma_rad,
@@ -77,6 +112,7 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit_thresholds(config, visit);
+  visit_sequence(config, visit);
   visit_measurement(config, visit);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -47,16 +48,22 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
         candidate, evidence, Refusal::kMatches,
         fmt::format("only {} feature matches, {} needed", g.num_matches, config.min_matches));
   }
-  if (g.num_inliers < config.min_inliers) {
+  const bool is_for_itself = !needs_sequence(g, config);
+  const int min_inliers = is_for_itself ? config.min_inliers : config.min_inliers_in_sequence;
+  if (g.num_inliers < min_inliers) {
     return rejection(candidate, evidence, Refusal::kInliers,
                      fmt::format("only {} features agree on one geometry, {} needed", g.num_inliers,
-                                 config.min_inliers));
+                                 min_inliers));
   }
-  if (g.spread_ratio < config.min_spread_ratio) {
+  if (is_for_itself && g.spread_ratio < config.min_spread_ratio) {
     return rejection(
         candidate, evidence, Refusal::kSpread,
         fmt::format("the features that agree cover {:.0f} % of the picture, {:.0f} % needed",
                     100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
+  }
+  if (config.require_pose && !g.match_from_query) {
+    return rejection(candidate, evidence, Refusal::kPose,
+                     "no relative pose: too few of the features that agree have a known depth");
   }
   return check_agreement(candidate, evidence, config);
 }
@@ -75,7 +82,47 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
                   evidence.odometry->mahalanobis_squared, config.max_odometry_chi_square));
 }
 
+// Two places that explain the view: nobody can tell which.
+std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evidence& evidence,
+                                         const Config& config) {
+  if (!evidence.rival) return std::nullopt;
+  const core::RivalEvidence& rival = *evidence.rival;
+  if (rival.mahalanobis_squared <= config.max_rival_chi_square) return std::nullopt;
+  return core::Ambiguous{
+      candidate.id, evidence, Refusal::kRival,
+      fmt::format(
+          "the last loop has put the camera where frame {} was taken, {:.2f} m and {:.1f} "
+          "degrees from here, more than odometry can have drifted since (chi-square {:.0f}, "
+          "at most {:.0f})",
+          rival.frame.index(), rival.apart_m, rival.apart_rad * kDegrees, rival.mahalanobis_squared,
+          config.max_rival_chi_square)};
+}
+
+// Not a loop yet, or never.
+std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Evidence& evidence,
+                                            const Config& config) {
+  const core::SequenceEvidence sequence = evidence.sequence.value_or(core::SequenceEvidence{});
+  if (sequence.num_views >= config.min_views) return std::nullopt;
+  if (sequence.is_over) {
+    return rejection(candidate, evidence, Refusal::kSequence,
+                     fmt::format("only {} views in a row go on to match, {} needed",
+                                 sequence.num_views, config.min_views));
+  }
+  return core::Ambiguous{
+      candidate.id, evidence, Refusal::kSequence,
+      fmt::format("{} views in a row go on to match so far, {} needed: waits for those that follow",
+                  sequence.num_views, config.min_views)};
+}
+
 }  // namespace
+
+bool may_need_sequences(const Config& config) {
+  return config.require_geometry && !config.require_pose && config.min_views > 1;
+}
+
+bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config) {
+  return may_need_sequences(config) && !geometry.match_from_query;
+}
 
 std::optional<Rejection> refuse_early(const Candidate& candidate, const Evidence& evidence,
                                       const History& history, const Config& config) {
@@ -110,6 +157,12 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   auto refused = check_geometry(candidate, evidence, config);
   if (!refused) refused = check_odometry(candidate, evidence, config);
   if (refused && config.require_geometry) return *refused;
+  if (!refused) {
+    if (auto undecided = check_rival(candidate, evidence, config)) return *undecided;
+  }
+  if (!refused && needs_sequence(*evidence.geometry, config)) {
+    if (auto undecided = check_sequence(candidate, evidence, config)) return *undecided;
+  }
   // without required geometry a pose is used if it is good, and the loop is counted without one if
   // not
   if (!refused) loop.match_from_query = evidence.geometry->match_from_query;
@@ -120,7 +173,8 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
 
 double score(const Evidence& evidence, const Config& config) {
   if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
-  const int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
+  int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
+  if (evidence.sequence) num_inliers = std::max(num_inliers, evidence.sequence->num_inliers);
   return num_inliers + 0.499 * (1.0 + evidence.similarity);
 }
 

@@ -23,9 +23,14 @@ std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
                                             const core::Evidence& evidence, const History& history,
                                             const Config& config);
 
+// Whether candidates without a relative pose are confirmed by the views around them, and whether
+// this one is.
+bool may_need_sequences(const Config& config);
+bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config);
+
 // How sure the evidence is, for the ranking of one query's candidates and for precision-recall
-// curves: the similarity, or the inliers plus the similarity mapped into [0, 1), which then only
-// breaks ties.
+// curves: the similarity, or the inliers (of the whole sequence, if there is one) plus the
+// similarity mapped into [0, 1), which then only breaks ties.
 double score(const core::Evidence& evidence, const Config& config);
 
 }  // namespace samewhere::verify

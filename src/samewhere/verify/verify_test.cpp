@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/measure.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/measure_rival.hpp>
 
 namespace samewhere::verify {
 namespace {
@@ -141,6 +143,38 @@ TEST(Decide, EachCheckRefusesUnderItsOwnName) {
   EXPECT_EQ(stage(evidence, config), "accepted");
 }
 
+TEST(Decide, WhereAMapIsBuiltLooksAloneAreNoLoop) {
+  core::Evidence evidence = good_evidence();
+  evidence.geometry->match_from_query.reset();
+  evidence.odometry.reset();
+  EXPECT_EQ(stage(evidence, {}), "pose");
+  EXPECT_EQ(stage(evidence, {.require_pose = false, .min_views = 1}), "accepted");
+}
+
+TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
+  const Config alone{.require_pose = false};
+  core::Evidence evidence = good_evidence();
+  EXPECT_EQ(stage(evidence, alone), "accepted") << "both views find the same pose";
+  evidence.geometry->match_from_query.reset();
+  evidence.odometry.reset();
+  EXPECT_EQ(stage(evidence, alone), "sequence");
+  evidence.sequence = core::SequenceEvidence{.num_views = alone.min_views - 1};
+  const auto waits = decide(candidate(100, 0), evidence, {}, alone);
+  EXPECT_EQ(core::name_of(waits), "AMBIGUOUS");
+  EXPECT_NE(core::reason_of(waits).find("9 views in a row go on to match so far, 10 needed"),
+            std::string::npos);
+  evidence.sequence->is_over = true;
+  EXPECT_EQ(stage(evidence, alone), "sequence");
+  evidence.sequence->num_views = alone.min_views;
+  EXPECT_EQ(stage(evidence, alone), "accepted");
+  // of each view less is asked, for it does not speak alone
+  evidence.geometry->num_inliers = alone.min_inliers_in_sequence;
+  evidence.geometry->spread_ratio = 0.01;
+  EXPECT_EQ(stage(evidence, alone), "accepted");
+  --evidence.geometry->num_inliers;
+  EXPECT_EQ(stage(evidence, alone), "inliers");
+}
+
 TEST(Decide, ARefusalSaysWhyInASentenceWithItsFigures) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_inliers = 17;
@@ -255,6 +289,53 @@ TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
   map = apply(map, edit);
   const auto evidence = measure_odometry(map, claim(3, 0, {}), 0.01, {});
   EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
+}
+
+// A corridor whose keyframe 20 a loop has put where keyframe 2 is.
+scene::MapVersion corridor_with_loop() {
+  scene::MapVersion map = corridor(80);
+  scene::Edit edit;
+  edit.loops.push_back(claim(20, 2, {}));
+  return apply(map, edit);
+}
+
+// A claim about this keyframe that would move it sideways by so much.
+scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres) {
+  const scene::LoopEdge ends = claim(query, 3, {});
+  core::Rigid3 match_from_query =
+      inverse(world_from_body(map, ends.match)) * world_from_body(map, ends.query);
+  match_from_query.translation.x() += metres;
+  return claim(query, 3, match_from_query);
+}
+
+TEST(MeasureRival, TheFirstLookAlikeHasNone) {
+  const scene::MapVersion map = corridor_with_loop();
+  EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), 0.01, {}));
+  EXPECT_TRUE(measure_rival(map, sideways(map, 20, 1.8), 0.01, {}));
+}
+
+TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
+  const scene::MapVersion map = corridor_with_loop();
+  const auto after = [&](int keyframes, double metres) {
+    return *measure_rival(map, sideways(map, 20 + keyframes, metres), 0.01, {});
+  };
+  EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
+  EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
+  EXPECT_GT(after(2, 1.8).mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_LT(after(2, 0.05).mahalanobis_squared, 1.0) << "one place, and a better pose";
+  EXPECT_LT(after(55, 1.8).mahalanobis_squared, after(2, 1.8).mahalanobis_squared / 5.0);
+}
+
+TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
+  core::Evidence evidence = good_evidence();
+  evidence.rival = core::RivalEvidence{
+      .frame = core::FrameId(20), .apart_m = 1.8, .apart_rad = 0.01, .mahalanobis_squared = 99.0};
+  EXPECT_EQ(stage(evidence, {}), "accepted");
+  evidence.rival->mahalanobis_squared = 101.0;
+  const auto verdict = decide(candidate(100, 0), evidence, {}, {});
+  EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
+  EXPECT_EQ(core::stage_of(verdict), "rival");
+  EXPECT_NE(core::reason_of(verdict).find("where frame 20 was taken, 1.80 m"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include <samewhere/core/verdict.hpp>
+#include <samewhere/scene/map_version.hpp>
+#include <samewhere/verify/config.hpp>
+
+namespace samewhere::verify {
+
+// What the loop `claim` would have to be better than: the place where the last loop before it on
+// the path, or one of the query itself, has put the camera already. How far from there the claim
+// would put it, against the drift that odometry may have gathered since that loop alone, is the
+// rival's. How well the map knows the way between both places does not count: a claim that only an
+// error of that way could save is a second place for one view. Nothing where no loop came before:
+// the first look-alike has no rival.
+std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
+                                                 const scene::LoopEdge& claim, double scale_sigma,
+                                                 const Config& config);
+
+}  // namespace samewhere::verify
