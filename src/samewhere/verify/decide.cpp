@@ -114,6 +114,14 @@ std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Ev
                   sequence.num_views, config.min_views)};
 }
 
+std::optional<core::Verdict> check_other_views(const Candidate& candidate, const Evidence& evidence,
+                                               const Config& config) {
+  auto undecided = check_rival(candidate, evidence, config);
+  if (!undecided && needs_sequence(*evidence.geometry, config))
+    undecided = check_sequence(candidate, evidence, config);
+  return undecided;
+}
+
 }  // namespace
 
 bool may_need_sequences(const Config& config) {
@@ -157,15 +165,12 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   auto refused = check_geometry(candidate, evidence, config);
   if (!refused) refused = check_odometry(candidate, evidence, config);
   if (refused && config.require_geometry) return *refused;
-  if (!refused) {
-    if (auto undecided = check_rival(candidate, evidence, config)) return *undecided;
-  }
-  if (!refused && needs_sequence(*evidence.geometry, config)) {
-    if (auto undecided = check_sequence(candidate, evidence, config)) return *undecided;
-  }
   // without required geometry a pose is used if it is good, and the loop is counted without one if
   // not
-  if (!refused) loop.match_from_query = evidence.geometry->match_from_query;
+  if (!refused) {
+    if (auto undecided = check_other_views(candidate, evidence, config)) return *undecided;
+    loop.match_from_query = evidence.geometry->match_from_query;
+  }
   // with depth it is 1, not about 1
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;
   return loop;
