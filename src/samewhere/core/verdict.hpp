@@ -59,7 +59,7 @@ struct SequenceEvidence {
   int match_view = 0;
   int num_views = 0;     // of the longest sequence through the candidate, as far as it is known
   int num_inliers = 0;   // of all of this sequence together
-  bool is_over = false;  // no later view can make it longer any more
+  bool is_over = false;  // has waited long enough
 };
 
 // Everything measured about one candidate. A part that was not measured is absent.

@@ -86,7 +86,7 @@ TEST(Bundle, DepthAndOneFixedCameraFindADisturbedSceneAgain) {
 TEST(Bundle, PixelsAloneAndTwoFixedCamerasFindADisturbedSceneAgain) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
-    const BundleProblem truth = test_scene({}, random);
+    const BundleProblem truth = test_scene({.num_fixed = 2, .has_depth = false}, random);
     const BundleResult result =
         solve_bundle(disturbed(truth, 0.01, 0.03, random), {.bundle_iterations = 20});
     EXPECT_LT(worst_pose_error(truth, result), 0.02) << "seed " << seed;

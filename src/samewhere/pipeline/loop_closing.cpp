@@ -73,9 +73,16 @@ class Places {
   bool is_without_depth_;
 };
 
+// With a map every view is judged by itself, whatever recognition alone would wait for.
+Config judging_each_view(Config config) {
+  config.verify.min_views = 1;
+  return config;
+}
+
 }  // namespace
 
-LoopClosing::LoopClosing(const Config& config) : config_(config), detector_(config) {}
+LoopClosing::LoopClosing(const Config& config)
+    : config_(config), detector_(judging_each_view(config)) {}
 
 LoopClosing::LoopClosing(const Config& config, const scene::StoredMap& known)
     : LoopClosing(config) {

@@ -81,24 +81,27 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
     wait_or_pause(rows.back());
   }
   if (!may_wait) return rows;
-  for (const core::Candidate& candidate : foretold(descriptor, candidates)) {
+  for (const core::Candidate& candidate : foretold(descriptor)) {
     rows.push_back(judged(candidate, views_.at(candidate.query), map, settings_.verify));
     wait_or_pause(rows.back());
   }
   auto settled = waiting_.settle(numbered_.number_of(view.frame));
+  for (const core::LedgerRow& row : settled) wait_or_pause(row);
   std::move(settled.begin(), settled.end(), std::back_inserter(rows));
   return rows;
 }
 
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {
-  if (core::is_loop(row.verdict)) history_.last_loop_query = row.candidate.query;
+  const core::Candidate& candidate = row.candidate;
+  if (may_need_sequences(settings_.verify)) was_judged_.insert({candidate.query, candidate.match});
+  if (core::is_loop(row.verdict))
+    history_.last_loop_query = std::max(history_.last_loop_query, std::optional(candidate.query));
   const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
   if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
     waiting_.add(row.candidate, ambiguous->evidence);
 }
 
-std::vector<core::Candidate> LoopDetector::foretold(const core::Descriptor& descriptor,
-                                                    const std::vector<core::Candidate>& known) {
+std::vector<core::Candidate> LoopDetector::foretold(const core::Descriptor& descriptor) {
   const int now = numbered_.number_of(descriptor.frame);
   std::vector<core::Candidate> candidates;
   for (const verify::ViewPair& views : waiting_.foretold(now)) {
@@ -106,10 +109,7 @@ std::vector<core::Candidate> LoopDetector::foretold(const core::Descriptor& desc
     const auto* query = views.query == now ? &descriptor : numbered_.at(views.query);
     if (query == nullptr || match == nullptr) continue;
     const bool is_recent = query->frame.index() <= match->frame.index() + window_frames_;
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const core::Candidate& c) {
-      return c.query == query->frame && c.match == match->frame;
-    });
-    if (is_recent || is_known) continue;
+    if (is_recent || was_judged_.contains({query->frame, match->frame})) continue;
     candidates.push_back({.query = query->frame,
                           .match = match->frame,
                           .similarity = core::ncc(query->unit, match->unit),

@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <samewhere/core/ledger.hpp>
@@ -83,8 +85,7 @@ class LoopDetector {
  private:
   void wait_or_pause(const core::LedgerRow& row);
   // Candidates that no search found: what the view should show if a sequence goes on.
-  std::vector<core::Candidate> foretold(const core::Descriptor& descriptor,
-                                        const std::vector<core::Candidate>& known);
+  std::vector<core::Candidate> foretold(const core::Descriptor& descriptor);
   core::LedgerRow judged(core::Candidate candidate, const features::View& view,
                          const MapKnowledge& map, const verify::Config& config);
   core::Verdict verdict_on(const core::Candidate& candidate, const features::View& view,
@@ -100,6 +101,7 @@ class LoopDetector {
   verify::MeasureSettings settings_;  // from here on of judge()
   verify::History history_;
   verify::Waiting waiting_;
+  std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where sequences are asked for
   NumberedViews numbered_;
   std::uint64_t window_frames_;
   std::map<core::FrameId, features::View> views_;

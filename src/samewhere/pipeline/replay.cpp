@@ -14,9 +14,15 @@ bool is_refused_by_graph(const core::Verdict& verdict) {
          (refused->stage == core::Refusal::kGraph || refused->stage == core::Refusal::kWithdrawn);
 }
 
+bool is_waiting(const core::Verdict& verdict) {
+  const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
+  return ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence;
+}
+
 // The run stopped measuring at its own thresholds.
 bool is_unmeasured(const core::Evidence& evidence, const core::Verdict& after,
                    const verify::Config& config) {
+  if (is_waiting(after) && !evidence.sequence) return true;
   if (evidence.geometry || !config.require_geometry) return false;
   const auto* refused = std::get_if<core::Rejection>(&after);
   return refused == nullptr || refused->stage == core::Refusal::kMatches;
@@ -49,14 +55,12 @@ class SecondJudge {
   void judge(const core::LedgerRow& row) {
     const core::Evidence evidence = without_neighbours(core::evidence_of(row.verdict));
     if (evidence.sequence && evidence.sequence->query_view > view_) {
-      settle(waiting_.settle(view_));
       view_ = evidence.sequence->query_view;
+      settle(waiting_.settle(view_ - 1));  // the run has seen all views before, found or not
     }
     core::Verdict verdict = decide(row.candidate, evidence, history_, config_);
     if (core::is_loop(verdict)) history_.last_loop_query = row.candidate.query;
-    const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
-    if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
-      waiting_.add(row.candidate, evidence);
+    if (is_waiting(verdict) && evidence.sequence) waiting_.add(row.candidate, evidence);
     verdicts_.insert_or_assign(row.candidate.id, std::move(verdict));
   }
 

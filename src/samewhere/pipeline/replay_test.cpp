@@ -87,6 +87,14 @@ TEST(Replay, ASequenceIsCountedAnewFromWhoeverPassesNow) {
   EXPECT_EQ(core::stage_of(replay(ledger, few)[0].after), "sequence");
 }
 
+TEST(Replay, WhatNeverWaitedCannotBeSaidToHaveWaitedInVain) {
+  core::Evidence alone = evidence(60);
+  alone.geometry->match_from_query.reset();
+  const core::LedgerRow row = judged(0, alone);
+  EXPECT_EQ(core::stage_of(row.verdict), "pose");
+  EXPECT_EQ(replay({row}, {.require_pose = false})[0].outcome, Replay::kUnmeasured);
+}
+
 TEST(Replay, WhatTheGraphRefusedStaysRefused) {
   core::LedgerRow row = judged(0, evidence(60));
   row.verdict = core::Rejection{row.candidate.id, evidence(60), core::Refusal::kWithdrawn, "bent"};

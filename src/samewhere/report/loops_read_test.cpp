@@ -75,6 +75,21 @@ TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
   EXPECT_TRUE(found.at(0).candidate.is_foretold);
 }
 
+TEST_F(LoopsRead, ARivalIsReadBack) {
+  core::Evidence torn = evidence(0.8, 100, 50);
+  torn.rival = core::RivalEvidence{
+      .frame = core::FrameId(3), .apart_m = 1.8, .apart_rad = 0.02, .mahalanobis_squared = 250.0};
+  const core::Candidate about = candidate(0, 9, 2, 0.8);
+  const std::string text = loops_json({{about, core::Ambiguous{.candidate = about.id,
+                                                               .evidence = torn,
+                                                               .stage = core::Refusal::kRival,
+                                                               .reason = "two places"}}});
+  const core::Ledger found = read(text);
+  EXPECT_EQ(loops_json(found), text);
+  EXPECT_EQ(core::stage_of(found.at(0).verdict), "rival");
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).rival->mahalanobis_squared, 250.0);
+}
+
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})

@@ -168,8 +168,9 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   // without required geometry a pose is used if it is good, and the loop is counted without one if
   // not
   if (!refused) {
-    if (auto undecided = check_other_views(candidate, evidence, config)) return *undecided;
-    loop.match_from_query = evidence.geometry->match_from_query;
+    const auto undecided = check_other_views(candidate, evidence, config);
+    if (undecided && config.require_geometry) return *undecided;
+    if (!undecided) loop.match_from_query = evidence.geometry->match_from_query;
   }
   // with depth it is 1, not about 1
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;

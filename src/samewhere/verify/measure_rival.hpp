@@ -13,7 +13,8 @@ namespace samewhere::verify {
 // would put it, against the drift that odometry may have gathered since that loop alone, is the
 // rival's. How well the map knows the way between both places does not count: a claim that only an
 // error of that way could save is a second place for one view. Nothing where no loop came before:
-// the first look-alike has no rival.
+// the first look-alike has no rival; nor where the match is of a part of the map that nothing joins
+// with it.
 std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
                                                  const scene::LoopEdge& claim, double scale_sigma,
                                                  const Config& config);

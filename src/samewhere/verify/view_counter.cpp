@@ -6,6 +6,8 @@
 namespace samewhere::verify {
 namespace {
 
+constexpr int kMinFeatures = 50;
+
 double shared_ratio(const features::View& a, const features::View& b,
                     const features::Config& config) {
   const auto matches = match_pair(a.features->descriptors, b.features->descriptors, config);
@@ -15,8 +17,8 @@ double shared_ratio(const features::View& a, const features::View& b,
 }  // namespace
 
 int ViewCounter::count(const features::View& frame) {
-  const bool is_empty = frame.features->size() == 0;
-  if (!is_empty && (!counted_ || shared_ratio(*counted_, frame, features_) < max_shared_)) {
+  if (frame.features->size() >= kMinFeatures &&
+      (!counted_ || shared_ratio(*counted_, frame, features_) < max_shared_)) {
     counted_ = frame;
     ++num_counted_;
   }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <samewhere/core/errors.hpp>
 #include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/waiting.hpp>
@@ -16,19 +18,33 @@ ViewPair views_of(const core::Evidence& evidence) {
 
 }  // namespace
 
+Waiting::Waiting(const Config& config) : config_(config) {
+  if (config.min_views > config.wait_views + 1) {
+    throw core::InputError(
+        fmt::format("verify.min_views is {}; expected at most {}, for nobody waits longer than "
+                    "verify.wait_views {}",
+                    config.min_views, config.wait_views + 1, config.wait_views));
+  }
+}
+
 void Waiting::add(const core::Candidate& candidate, const core::Evidence& evidence) {
   core::require(evidence.geometry && evidence.sequence, "who waits was measured");
+  const ViewPair views = views_of(evidence);
   const auto later = std::upper_bound(
-      waiters_.begin(), waiters_.end(), evidence.sequence->query_view,
+      waiters_.begin(), waiters_.end(), views.query,
       [](int view, const Waiter& waiter) { return view < waiter.evidence.sequence->query_view; });
   waiters_.insert(later, {candidate, evidence});
+  if (candidate.is_foretold) return;
+  int& num_inliers = claims_[views];
+  num_inliers = std::max(num_inliers, evidence.geometry->num_inliers);
 }
 
 std::vector<ViewPair> Waiting::foretold(int query_view) {
-  std::vector<Sequence> near = sequences();
-  std::erase_if(near, [&](const Sequence& sequence) {
-    return sequence.num_views < 2 || sequence.last.query < query_view - config_.max_view_gap;
-  });
+  std::vector<Sequence> near;
+  for (const auto& [views, sequence] : sequences()) {
+    if (sequence.num_views > 1 && sequence.last.query >= query_view - config_.max_view_gap)
+      near.push_back(sequence);
+  }
   std::stable_sort(near.begin(), near.end(), is_longer);
   std::vector<ViewPair> pairs;
   for (const Sequence& sequence : near) {
@@ -41,6 +57,7 @@ std::vector<ViewPair> Waiting::foretold(int query_view) {
 }
 
 void Waiting::add_next(const ViewPair& end, int query, int step, std::vector<ViewPair>& pairs) {
+  if (query < first_kept_) return;
   const int direction = query > end.query ? 1 : -1;
   const int query_gap = direction * (query - end.query);
   for (const int match_gap : {query_gap, query_gap + 1, query_gap - 1}) {
@@ -53,11 +70,10 @@ void Waiting::add_next(const ViewPair& end, int query, int step, std::vector<Vie
 std::vector<core::LedgerRow> Waiting::settle(int view) {
   std::vector<core::LedgerRow> rows = settle_until(view - config_.wait_views);
   // whoever still waits may hang on what came wait_views before it
-  const int first_kept = view - 2 * config_.wait_views;
-  std::erase_if(waiters_, [&](const Waiter& waiter) {
-    return waiter.evidence.sequence->query_view < first_kept;
-  });
-  std::erase_if(foretold_, [&](const ViewPair& pair) { return pair.query < first_kept; });
+  first_kept_ = std::max(first_kept_, view - 2 * config_.wait_views);
+  const ViewPair first{first_kept_, std::numeric_limits<int>::min()};
+  claims_.erase(claims_.begin(), claims_.lower_bound(first));
+  foretold_.erase(foretold_.begin(), foretold_.lower_bound(first));
   return rows;
 }
 
@@ -65,46 +81,50 @@ std::vector<core::LedgerRow> Waiting::settle_all() {
   return settle_until(std::numeric_limits<int>::max());
 }
 
-std::vector<Sequence> Waiting::sequences() const {
+std::map<ViewPair, Sequence> Waiting::sequences() const {
   std::vector<Claim> claims;
-  for (const Waiter& waiter : waiters_) {
-    if (!waiter.candidate.is_foretold)
-      claims.push_back({views_of(waiter.evidence), waiter.evidence.geometry->num_inliers});
-  }
-  return longest_sequences(claims, config_.max_view_gap);
+  for (const auto& [views, num_inliers] : claims_) claims.push_back({views, num_inliers});
+  const std::vector<Sequence> longest = longest_sequences(claims, config_.max_view_gap);
+  std::map<ViewPair, Sequence> sequences;
+  for (std::size_t i = 0; i < claims.size(); ++i) sequences[claims[i].views] = longest[i];
+  return sequences;
 }
 
-Sequence Waiting::held_by(const Waiter& foretold, const std::vector<Sequence>& longest) const {
-  Sequence best{.num_views = 1, .num_inliers = foretold.evidence.geometry->num_inliers};
-  const ViewPair views = views_of(foretold.evidence);
-  auto sequence = longest.begin();
-  for (const Waiter& waiter : waiters_) {
-    if (waiter.candidate.is_foretold) continue;
-    const ViewPair other = views_of(waiter.evidence);
-    const bool is_next = goes_on(views, other, sequence->step, config_.max_view_gap) ||
-                         goes_on(other, views, sequence->step, config_.max_view_gap);
-    if (is_next && is_longer(*sequence, best)) best = *sequence;
-    ++sequence;
+Sequence Waiting::held_by(const ViewPair& foretold,
+                          const std::map<ViewPair, Sequence>& longest) const {
+  const int gap = config_.max_view_gap;
+  constexpr int kAny = std::numeric_limits<int>::min();
+  Sequence best;
+  const auto end = longest.lower_bound({foretold.query + gap + 1, kAny});
+  for (auto it = longest.lower_bound({foretold.query - gap, kAny}); it != end; ++it) {
+    const auto& [other, sequence] = *it;
+    const bool is_next = goes_on(foretold, other, sequence.step, gap) ||
+                         goes_on(other, foretold, sequence.step, gap);
+    if (is_next && is_longer(sequence, best)) best = sequence;
   }
   return best;
 }
 
 std::vector<core::LedgerRow> Waiting::settle_until(int last_view_given_up) {
-  const std::vector<Sequence> longest = sequences();
-  auto next = longest.begin();
   std::vector<core::LedgerRow> rows;
+  if (waiters_.empty()) return rows;
+  const std::map<ViewPair, Sequence> longest = sequences();
+  std::vector<Waiter> undecided;
   for (Waiter& waiter : waiters_) {
     core::SequenceEvidence& evidence = *waiter.evidence.sequence;
-    const Sequence sequence = waiter.candidate.is_foretold ? held_by(waiter, longest) : *next++;
-    if (waiter.is_decided) continue;
+    const ViewPair views = views_of(waiter.evidence);
+    const Sequence sequence =
+        waiter.candidate.is_foretold ? held_by(views, longest) : longest.at(views);
     evidence.num_views = sequence.num_views;
     evidence.num_inliers = sequence.num_inliers;
     evidence.is_over = evidence.query_view <= last_view_given_up;
     core::Verdict verdict = decide(waiter.candidate, waiter.evidence, {}, config_);
-    if (std::holds_alternative<core::Ambiguous>(verdict)) continue;
-    waiter.is_decided = true;
-    rows.push_back({waiter.candidate, std::move(verdict)});
+    if (std::holds_alternative<core::Ambiguous>(verdict))
+      undecided.push_back(waiter);
+    else
+      rows.push_back({waiter.candidate, std::move(verdict)});
   }
+  waiters_ = std::move(undecided);
   return rows;
 }
 

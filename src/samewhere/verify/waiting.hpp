@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace samewhere::verify {
 // Candidates whose own evidence is good, and who wait for what the views around them say.
 class Waiting {
  public:
-  explicit Waiting(const Config& config) : config_(config) {}
+  // Throws InputError if who waits could not live to see a sequence of min_views.
+  explicit Waiting(const Config& config);
 
   // evidence.sequence knows the views.
   void add(const core::Candidate& candidate, const core::Evidence& evidence);
@@ -31,20 +33,21 @@ class Waiting {
   struct Waiter {
     core::Candidate candidate;
     core::Evidence evidence;
-    bool is_decided = false;  // others may still hang on it
   };
 
-  // Of those who were not foretold, in their order.
-  std::vector<Sequence> sequences() const;
-  // The longest of these sequences that somebody foretold goes on from, or that goes on from him.
-  Sequence held_by(const Waiter& foretold, const std::vector<Sequence>& longest) const;
+  // Of every pair of views that somebody found.
+  std::map<ViewPair, Sequence> sequences() const;
+  // The longest of these that a pair goes on from, or that goes on from it.
+  Sequence held_by(const ViewPair& foretold, const std::map<ViewPair, Sequence>& longest) const;
   // The pairs not named yet in which the query view would go on from an end of a sequence.
   void add_next(const ViewPair& end, int query, int step, std::vector<ViewPair>& pairs);
   std::vector<core::LedgerRow> settle_until(int last_view_given_up);
 
   Config config_;
-  std::vector<Waiter> waiters_;  // their query views ascend
-  std::set<ViewPair> foretold_;  // so far
+  std::vector<Waiter> waiters_;     // undecided; their query views ascend
+  std::map<ViewPair, int> claims_;  // inliers of the best candidate of these views, not foretold
+  std::set<ViewPair> foretold_;     // so far
+  int first_kept_ = 0;              // query views before are forgotten
 };
 
 }  // namespace samewhere::verify

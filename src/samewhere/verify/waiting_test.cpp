@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/verify/waiting.hpp>
 
 namespace samewhere::verify {
@@ -99,6 +101,25 @@ TEST(Waiting, ForetellsHowASequenceGoesOnAndHowItBeganOnce) {
   EXPECT_EQ(pairs[0], (ViewPair{52, 12}));
   EXPECT_NE(std::find(pairs.begin(), pairs.end(), ViewPair{49, 9}), pairs.end());
   EXPECT_TRUE(waiting.foretold(52).empty()) << "all named already";
+}
+
+TEST(Waiting, ALongSequenceIsNotAskedForItsBeginningForEver) {
+  Waiting waiting(few_views());
+  std::set<ViewPair> named;
+  for (int i = 0; i < 60; ++i) {
+    add(waiting, 100 + i, 10 + i);
+    for (const ViewPair& pair : waiting.foretold(100 + i))
+      EXPECT_TRUE(named.insert(pair).second) << pair.query << " " << pair.match;
+    waiting.settle(100 + i);
+  }
+}
+
+TEST(Waiting, NobodyWaitsLongerThanHeMay) {
+  Config config = few_views();
+  config.min_views = config.wait_views + 1;
+  EXPECT_NO_THROW(Waiting{config});
+  ++config.min_views;
+  EXPECT_THROW(Waiting{config}, core::InputError);
 }
 
 TEST(Waiting, ForetellsBackwardsWhereAWalkIsSeenTheOtherWayRound) {
