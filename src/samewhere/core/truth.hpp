@@ -49,6 +49,14 @@ struct FramePair {
   friend auto operator<=>(const FramePair&, const FramePair&) = default;
 };
 
+// Frames one after another, by their 0-based positions; the last one included.
+struct FrameSpan {
+  int first = 0;
+  int last = 0;
+
+  friend bool operator==(const FrameSpan&, const FrameSpan&) = default;
+};
+
 // What is known to be true about a source; each part may be missing.
 struct Truth {
   Trajectory trajectory;                // empty: not known
@@ -57,6 +65,10 @@ struct Truth {
   // Frames of different places that look alike by construction, as only a made-up building can
   // tell; ascending, no pair twice. Empty: none, or not known.
   std::vector<FramePair> impostors;
+  // Stays where the camera has been before, each with at least one moment at which a person could
+  // tell that it is this place and no other, as only a made-up building knows; ascending. Nothing:
+  // not known.
+  std::optional<std::vector<FrameSpan>> revisits;
 };
 
 }  // namespace samewhere::core

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <numbers>
 
 #include <samewhere/evaluate/loop_check.hpp>
@@ -54,6 +55,13 @@ CheckedLoop check(const AcceptedLoop& loop, const core::Truth& truth, double sca
   return checked;
 }
 
+bool is_closed(const core::FrameSpan& revisit, const std::vector<CheckedLoop>& loops) {
+  return std::any_of(loops.begin(), loops.end(), [&](const CheckedLoop& checked) {
+    return checked.truth == LoopTruth::kRight && revisit.first <= checked.loop.query &&
+           checked.loop.query <= revisit.last;
+  });
+}
+
 }  // namespace
 
 LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth& truth,
@@ -68,6 +76,10 @@ LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth&
     const bool is_impostor =
         found == LoopTruth::kWrong && are_impostors(truth.impostors, loop.query, loop.match);
     result.num_impostors += is_impostor ? 1 : 0;
+  }
+  for (const core::FrameSpan& revisit : truth.revisits.value_or(std::vector<core::FrameSpan>{})) {
+    ++result.num_revisits;
+    result.num_closed += is_closed(revisit, result.loops) ? 1 : 0;
   }
   return result;
 }

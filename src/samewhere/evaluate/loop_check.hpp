@@ -33,6 +33,8 @@ struct LoopCheck {
   int num_wrong = 0;
   int num_unknown = 0;
   int num_impostors = 0;  // wrong ones that join what Truth::impostors names
+  int num_revisits = 0;   // that Truth::revisits names
+  int num_closed = 0;     // of these, with a right loop in them
 };
 
 // Judges accepted loops by docs/evaluation.md: a loop is wrong if its match_from_query differs from

@@ -41,6 +41,18 @@ TEST(LoopCheck, TheTruePoseIsRight) {
   EXPECT_NEAR(*check.loops[0].rotation_error_deg, 0.0, 1e-6);
 }
 
+TEST(LoopCheck, ARevisitIsClosedByARightLoopWithinIt) {
+  core::Truth truth = walk_and_return();
+  const LoopCheck unknown = check_loops({loop_with(true_return())}, truth);
+  EXPECT_EQ(unknown.num_revisits, 0);
+  truth.revisits = std::vector<core::FrameSpan>{{1, 2}, {3, 3}};
+  const LoopCheck check = check_loops({loop_with(true_return())}, truth);
+  EXPECT_EQ(check.num_revisits, 2);
+  EXPECT_EQ(check.num_closed, 1);
+  const LoopCheck wrong = check_loops({loop_with(core::inverse(true_return()))}, truth);
+  EXPECT_EQ(wrong.num_closed, 0) << "a wrong loop closes nothing";
+}
+
 TEST(LoopCheck, TheBordersAreTwentyCentimetresAndSixDegrees) {
   core::Rigid3 shifted = true_return();
   shifted.translation.y() = 0.199;

@@ -20,6 +20,12 @@ int count_refused(const std::vector<const core::LedgerRow*>& rows, core::Refusal
   }));
 }
 
+// Whether it came as far as the check whether the matches agree on one geometry.
+bool has_matches(const core::Verdict& verdict) {
+  const auto* rejection = std::get_if<core::Rejection>(&verdict);
+  return rejection == nullptr || rejection->stage >= core::Refusal::kInliers;
+}
+
 std::vector<evaluate::Match> as_matches(const std::vector<report::ScoredPair>& pairs) {
   std::vector<evaluate::Match> matches;
   for (const auto& pair : pairs) {
@@ -75,6 +81,10 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
   findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
   findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
   for (const auto* row : rows) {
+    if (has_matches(row->verdict)) {
+      findings.matching.push_back({static_cast<int>(row->candidate.query.index()),
+                                   static_cast<int>(row->candidate.match.index())});
+    }
     const auto* closure = std::get_if<core::LoopClosure>(&row->verdict);
     if (closure == nullptr) continue;
     evaluate::AcceptedLoop loop;
@@ -118,7 +128,12 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.loops = evaluate::check_loops(findings.loops, truth, scale);
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
   evaluation.num_withdrawn = findings.num_withdrawn;
-  evaluation.knows_impostors = !truth.impostors.empty();
+  if (!truth.impostors.empty()) {
+    evaluation.num_impostors_matching = static_cast<int>(
+        std::count_if(findings.matching.begin(), findings.matching.end(), [&](const auto& pair) {
+          return evaluate::are_impostors(truth.impostors, pair.query, pair.match);
+        }));
+  }
   for (const auto& [num_edges, motions] : findings.odometry_chains) {
     if (const auto found = evaluate::consistency(motions, truth.trajectory))
       evaluation.drift_model[num_edges] = *found;
@@ -171,8 +186,14 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   figures.push_back(
       {"loops accepted: right / wrong / unknown",
        fmt::format("{} / {} / {}", loops.num_right, loops.num_wrong, loops.num_unknown)});
-  if (evaluation.knows_impostors) {
+  if (evaluation.num_impostors_matching) {
     figures.push_back({"of the wrong ones, impostors", std::to_string(loops.num_impostors)});
+    figures.push_back({"impostors among the candidates with enough matches",
+                       std::to_string(*evaluation.num_impostors_matching)});
+  }
+  if (loops.num_revisits > 0) {
+    figures.push_back(
+        {"revisits closed", fmt::format("{} of {}", loops.num_closed, loops.num_revisits)});
   }
   if (evaluation.num_refused_by_graph + evaluation.num_withdrawn > 0) {
     figures.push_back(

@@ -23,7 +23,8 @@ struct SlamFindings {
   core::Trajectory odometry;    // before any correction
   int num_candidates = 0;
   std::vector<evaluate::AcceptedLoop> loops;
-  bool is_scale_free = false;  // monocular: aligned with a scale
+  std::vector<core::FramePair> matching;  // candidates in which enough features matched
+  bool is_scale_free = false;             // monocular: aligned with a scale
   // Odometry by the number of edges that it is composed of; empty if not known, or without a scale.
   std::map<int, std::vector<evaluate::MeasuredMotion>> odometry_chains;
   // Loops of the judge that the pose graph does not believe, by when it found out.
@@ -50,7 +51,7 @@ struct SlamEvaluation {
   evaluate::LoopCheck loops;
   int num_refused_by_graph = 0;
   int num_withdrawn = 0;
-  bool knows_impostors = false;                      // whether the truth names any
+  std::optional<int> num_impostors_matching;  // of the candidates; only if the truth names any
   std::map<int, evaluate::Consistency> drift_model;  // by the number of edges
 };
 

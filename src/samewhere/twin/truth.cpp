@@ -259,9 +259,30 @@ WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const cor
   return truth;
 }
 
+std::vector<core::FrameSpan> revisits_of(const std::vector<TrueLoop>& loops) {
+  std::vector<core::FrameSpan> stays;
+  std::vector<core::FrameSpan> revisits;  // of these, who can be confirmed
+  for (const TrueLoop& loop : loops) {
+    if (!stays.empty() && loop.query <= stays.back().last + 1) {
+      stays.back().last = loop.query;
+    } else {
+      stays.push_back({loop.query, loop.query});
+    }
+    const core::FrameSpan& stay = stays.back();
+    const bool is_known = !revisits.empty() && revisits.back().first == stay.first;
+    if (is_known) {
+      revisits.back() = stay;
+    } else if (loop.is_confirmable) {
+      revisits.push_back(stay);
+    }
+  }
+  return revisits;
+}
+
 core::Truth core_truth(core::Trajectory poses, const WalkTruth& truth) {
-  core::Truth result{.trajectory = std::move(poses), .places = truth.places, .impostors = {}};
+  core::Truth result{.trajectory = std::move(poses), .places = truth.places};
   if (truth.stride_frames != 1) return result;
+  result.revisits = revisits_of(truth.loops);
   for (const Impostor& impostor : truth.impostors) {
     result.impostors.push_back({impostor.query, impostor.match});
   }

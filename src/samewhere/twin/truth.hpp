@@ -75,8 +75,12 @@ using WatchJudging = std::function<void(int num_judged, int num_pairs)>;
 WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera,
                    const WatchJudging& watch = nullptr);
 
-// What the rest of the system compares with. Without impostors if the walk is long: to name a part
-// of them would make others look like none.
+// Frames one after another that all are queries of true loops, of which at least one is
+// confirmable: ascending. `loops` as in WalkTruth, of every frame.
+std::vector<core::FrameSpan> revisits_of(const std::vector<TrueLoop>& loops);
+
+// What the rest of the system compares with. Without impostors and revisits if the walk is long: to
+// name a part of them would make others look like none.
 core::Truth core_truth(core::Trajectory poses, const WalkTruth& truth);
 
 }  // namespace samewhere::twin

@@ -156,6 +156,18 @@ TEST(Loops, CanBeConfirmedByAUniqueThingThatBothViewsShow) {
   EXPECT_EQ(half.loops[0].object, "door plate 1");
 }
 
+TEST(Revisits, AreStaysInAKnownPlaceThatCanBeConfirmedSomewhere) {
+  const auto loop = [](int query, bool is_confirmable) {
+    return TrueLoop{.query = query, .match = 0, .overlap = 0.6, .is_confirmable = is_confirmable};
+  };
+  EXPECT_EQ(revisits_of({}), std::vector<core::FrameSpan>{});
+  EXPECT_EQ(revisits_of({loop(20, false), loop(21, false)}), std::vector<core::FrameSpan>{});
+  // the second match of frame 21 tells; 24 begins another stay, in which nothing does
+  EXPECT_EQ(revisits_of({loop(20, false), loop(21, false), loop(21, true), loop(22, false),
+                         loop(24, false), loop(30, true), loop(31, true)}),
+            (std::vector<core::FrameSpan>{{20, 22}, {30, 31}}));
+}
+
 TEST(Frames, AreInTheAreaThatHoldsThemOrTheNearest) {
   const WalkTruth truth =
       truth_in(testing::twin_rooms(0.0F),
