@@ -27,6 +27,8 @@ TEST(Corridor, ALookalikeDoorIsNeverMistakenForAnotherAndTheTrueReturnTakesTheDr
   EXPECT_EQ(evaluation.loops.num_wrong, 0);
   EXPECT_GT(evaluation.num_candidates, 100) << "zero wrong among none proves nothing";
   EXPECT_GE(evaluation.loops.num_right, 1);
+  EXPECT_EQ(evaluation.loops.num_revisits, 1);
+  EXPECT_EQ(evaluation.loops.num_closed, 1);
   ASSERT_TRUE(evaluation.ate && evaluation.odometry_ate);
   EXPECT_LT(evaluation.ate->rmse_m, evaluation.odometry_ate->rmse_m);
   for (const auto& row : record.ledger) EXPECT_FALSE(core::reason_of(row.verdict).empty());

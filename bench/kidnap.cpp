@@ -1,0 +1,207 @@
+// kidnap: put down somewhere with a map in hand, does one find out where, and never somewhere else?
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "program.hpp"
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/progress.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/slam.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+constexpr double kSamePlace_m = 0.5;
+constexpr double kSamePlace_rad = 0.2;
+
+struct Settings {
+  std::string preset = "twin-corridors";
+  std::string similarity = "1";
+  int first_seed = 1000;
+  int num_seeds = 1;
+  int num_starts = 10;
+  int num_frames = 30;  // after each start
+  std::string csv_file;
+};
+
+struct Walk {
+  core::SourceInfo info;
+  std::vector<core::Frame> frames;
+  core::Truth truth;
+};
+
+Walk walk_of(const pipeline::Config& config) {
+  const auto source = pipeline::open_source(config);
+  Walk walk{.info = source->info(), .frames = {}, .truth = {}};
+  while (const auto frame = source->next()) walk.frames.push_back(*frame);
+  walk.truth = source->truth();
+  return walk;
+}
+
+scene::StoredMap map_of(const Walk& walk, int num_frames, const pipeline::Config& config) {
+  pipeline::Slam slam(config);
+  for (int i = 0; i < num_frames; ++i) slam.feed(walk.frames[static_cast<std::size_t>(i)]);
+  slam.finish();
+  return {slam.map(), {.frames = slam.frames(), .descriptors = slam.descriptors()}};
+}
+
+// `count` of them, evenly spread.
+std::vector<int> some_of(const std::vector<int>& all, int count) {
+  std::vector<int> some;
+  for (int i = 0; i < count && !all.empty(); ++i)
+    some.push_back(all[static_cast<std::size_t>(i) * all.size() / static_cast<std::size_t>(count)]);
+  some.erase(std::unique(some.begin(), some.end()), some.end());
+  return some;
+}
+
+bool was_seen_before(const core::PlaceTruthMatrix& places, int query, int num_frames) {
+  for (int match = 0; match < num_frames; ++match) {
+    if (places.at(query, match) != core::PlaceTruth::kDifferent) return true;
+  }
+  return false;
+}
+
+// Frames of which the first `num_frames` show a look-alike, but nothing of the place.
+std::vector<int> first_lookalikes(const Walk& walk, int num_frames) {
+  std::vector<int> found;
+  for (const core::FramePair& pair : walk.truth.impostors) {
+    const bool is_new = found.empty() || found.back() != pair.query;
+    if (is_new && pair.match < num_frames && pair.query >= num_frames &&
+        !was_seen_before(*walk.truth.places, pair.query, num_frames)) {
+      found.push_back(pair.query);
+    }
+  }
+  return found;
+}
+
+struct Outcomes {
+  int num_right = 0;
+  int num_wrong = 0;
+  int num_silent = 0;             // cannot tell
+  std::vector<int> frames_taken;  // of those who were found
+};
+
+// Whether the pose is where the truth has it, in the world of a map that began at frame 0.
+bool is_right(const core::Rigid3& world_from_body, const Walk& walk, std::size_t frame) {
+  const core::Rigid3 truth = inverse(walk.truth.trajectory[0].world_from_camera) *
+                             walk.truth.trajectory[frame].world_from_camera;
+  const core::Rigid3 apart = inverse(truth) * world_from_body;
+  return apart.translation.norm() < kSamePlace_m &&
+         core::angle_rad(apart.rotation) < kSamePlace_rad;
+}
+
+// Put down at the frame, for so many frames at most: the first pose counts.
+void put_down(const Walk& walk, int start, int num_frames, const scene::StoredMap& map,
+              const pipeline::Config& config, Outcomes& outcomes) {
+  pipeline::Slam slam(config, map, pipeline::Slam::Use::kLocalize);
+  const int end = std::min(start + num_frames, static_cast<int>(walk.frames.size()));
+  for (int i = start; i < end; ++i) {
+    core::Frame frame = walk.frames[static_cast<std::size_t>(i)];
+    frame.id = core::FrameId(static_cast<std::uint64_t>(i - start), slam.session());
+    slam.feed(frame);
+    const core::FramePose& pose = slam.frames().back();
+    if (!pose.is_measured) continue;
+    const core::Rigid3 world_from_frame =
+        world_from_body(map.map, pose.reference_keyframe) * pose.reference_from_frame;
+    const bool is_found = is_right(world_from_frame, walk, static_cast<std::size_t>(i));
+    ++(is_found ? outcomes.num_right : outcomes.num_wrong);
+    outcomes.frames_taken.push_back(i - start + 1);
+    slam.finish();
+    return;
+  }
+  ++outcomes.num_silent;
+  slam.finish();
+}
+
+Outcomes put_down_at(const Walk& walk, const std::vector<int>& starts, int num_map_frames,
+                     const Settings& settings, const pipeline::Config& config) {
+  Outcomes outcomes;
+  const scene::StoredMap map = map_of(walk, num_map_frames, config);
+  core::Progress progress("starts", static_cast<int>(starts.size()));
+  for (const int start : starts) {
+    put_down(walk, start, settings.num_frames, map, config, outcomes);
+    progress.update(outcomes.num_right + outcomes.num_wrong + outcomes.num_silent);
+  }
+  progress.finish();
+  return outcomes;
+}
+
+std::vector<std::string> row_of(const std::string& source, std::string_view where,
+                                const Outcomes& outcomes) {
+  std::vector<int> taken = outcomes.frames_taken;
+  std::sort(taken.begin(), taken.end());
+  return {source,
+          std::string(where),
+          fmt::format("{}", outcomes.num_right + outcomes.num_wrong + outcomes.num_silent),
+          fmt::format("{}", outcomes.num_right),
+          fmt::format("{}", outcomes.num_wrong),
+          fmt::format("{}", outcomes.num_silent),
+          taken.empty() ? "-" : fmt::format("{}", taken[taken.size() / 2])};
+}
+
+void measure_walk(const std::string& source, const Settings& settings, Table& table) {
+  pipeline::Config config = pipeline::profile("default");
+  config.source = source;
+  config.threads = false;
+  const Walk walk = walk_of(config);
+  config = with_window_in_frames(config, walk.info);
+  const auto& revisits = walk.truth.revisits;
+  if (!revisits || revisits->empty() || !walk.truth.places)
+    throw core::InputError(source + ": comes back to no place, expected a walk that does");
+  const core::FrameSpan back = revisits->front();
+  std::vector<int> return_frames;
+  for (int i = back.first; i <= back.last; ++i) return_frames.push_back(i);
+  table.rows.push_back(row_of(source, "back in the map",
+                              put_down_at(walk, some_of(return_frames, settings.num_starts),
+                                          back.first, settings, config)));
+  const int half = back.first / 2;
+  const auto strange = some_of(first_lookalikes(walk, half), settings.num_starts);
+  if (strange.empty()) return;
+  table.rows.push_back(row_of(source, "in a look-alike of half the map",
+                              put_down_at(walk, strange, half, settings, config)));
+}
+
+void measure(const Settings& settings) {
+  Table table{
+      {"walk", "put down", "starts", "right", "wrong", "cannot tell", "frames until found, median"},
+      {}};
+  for (int i = 0; i < settings.num_seeds; ++i) {
+    measure_walk(fmt::format("twin:{}?seed={}&similarity={}", settings.preset,
+                             settings.first_seed + i, settings.similarity),
+                 settings, table);
+  }
+  publish(table, settings.csv_file);
+}
+
+std::function<void()> set_up(CLI::App& app) {
+  const auto settings = std::make_shared<Settings>();
+  app.name("kidnap");
+  app.description(
+      "A walk makes a map of what it sees before it comes back. Then one is put down, with that "
+      "map, at frames of the way back; and, with a map of its first half, where only a look-alike "
+      "is in it.");
+  app.add_option("--preset", settings->preset, "of the built-in world");
+  app.add_option("--similarity", settings->similarity, "of places of one kind, 0 to 1");
+  app.add_option("--seed", settings->first_seed, "of the first walk");
+  app.add_option("--seeds", settings->num_seeds, "walks")->check(CLI::Range(1, 100));
+  app.add_option("--starts", settings->num_starts, "of each walk and kind")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--frames", settings->num_frames, "after a start; who is not found cannot tell")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--csv", settings->csv_file, "write the table to this file, too");
+  return [settings] { measure(*settings); };
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
+}
