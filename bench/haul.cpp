@@ -77,7 +77,7 @@ class Haul {
 
   // Over all frames, metres.
   double ate_m() const {
-    const auto error = evaluate::ate(source_->truth().trajectory,
+    const auto error = evaluate::ate(source_->true_trajectory(),
                                      pipeline::trajectory_of(slam_.map(), slam_.frames()),
                                      evaluate::Alignment::kSe3);
     return error ? error->rmse_m : 0.0;

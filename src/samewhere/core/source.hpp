@@ -33,6 +33,8 @@ class Source {
   virtual std::optional<Frame> next() = 0;
   // Ground truth that came with the frames. Throws InputError if it is there but broken.
   virtual Truth truth() const = 0;
+  // Its trajectory alone, for which nothing else has to be worked out. Throws as truth() does.
+  virtual Trajectory true_trajectory() const { return truth().trajectory; }
 };
 
 }  // namespace samewhere::core

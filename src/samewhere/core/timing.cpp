@@ -8,6 +8,9 @@
 
 #include <sys/resource.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <samewhere/core/timing.hpp>
 
@@ -61,6 +64,13 @@ double peak_memory_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void return_free_memory() {
+#ifdef __GLIBC__
+  constexpr std::size_t kKeepNothing = 0;
+  malloc_trim(kKeepNothing);
+#endif
 }
 
 }  // namespace samewhere::core

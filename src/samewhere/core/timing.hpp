@@ -71,6 +71,10 @@ class ScopedTimer {
 // Highest resident memory of this process so far, MiB.
 double peak_memory_mib();
 
+// What was freed goes back to the system, as far as the allocator lets it. After large work: many
+// small pieces that were needed at once would otherwise stay with the program for good.
+void return_free_memory();
+
 // Since this program was started, seconds, to a hundredth; nothing where the system does not say.
 std::optional<double> seconds_since_program_start();
 

@@ -180,6 +180,7 @@ class RectifiedSource : public core::Source {
 
   core::SourceInfo info() const override { return source_->info(); }
   core::Truth truth() const override { return source_->truth(); }
+  core::Trajectory true_trajectory() const override { return source_->true_trajectory(); }
 
   std::optional<core::Frame> next() override {
     std::optional<core::Frame> frame = source_->next();

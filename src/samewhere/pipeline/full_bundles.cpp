@@ -7,8 +7,10 @@ namespace samewhere::pipeline {
 
 scene::Edit Bundling::answer(const BundleAll& question) {
   const core::ScopedTimer timer(timings_, "full bundle");
-  return map::full_bundle(question.map, question.window,
-                          {config_.map, config_.features, config_.optimize});
+  scene::Edit edit = map::full_bundle(question.map, question.window,
+                                      {config_.map, config_.features, config_.optimize});
+  core::return_free_memory();
+  return edit;
 }
 
 void FullBundles::note_correction(const scene::MapVersion& map) {

@@ -55,6 +55,7 @@ class TwinSource : public core::Source {
     truth.inertial = walk_->inertial_truth();
     return truth;
   }
+  core::Trajectory true_trajectory() const override { return walk_->walk().poses; }
 
  private:
   struct Made {
