@@ -14,8 +14,8 @@
 namespace samewhere::pipeline {
 namespace {
 
-constexpr int kNumFrames = 120;  // 8 s
-constexpr double kRight_m = 0.1;
+constexpr int kNumFrames = 120;    // 8 s
+constexpr double kRight_m = 0.15;  // who comes back from the dark sees the old map from afar
 
 // How many frames of a walk have a pose, and how many of these poses are right.
 struct Outcome {

@@ -133,12 +133,16 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
 LoopAnswer LoopClosing::answer(const FindPlace& question) {
   LoopAnswer answer;
   answer.rows = detector_.recognise(question.image, question.view, timings_);
-  const core::LedgerRow* best = best_of_query(answer.rows, config_.verify);
-  const auto* place = best == nullptr ? nullptr : std::get_if<core::LoopClosure>(&best->verdict);
-  if (place == nullptr) return answer;
-  answer.place = Place{.keyframe = keyframe_of_.at(best->candidate.match)};
-  if (place->match_from_query)
-    answer.place->keyframe_from_body = rigid_part(*place->match_from_query);
+  for (const core::LedgerRow& row : answer.rows) {
+    const auto& geometry = core::evidence_of(row.verdict).geometry;
+    if (!geometry) continue;
+    Place place{.keyframe = keyframe_of_.at(row.candidate.match),
+                .keyframe_from_body = std::nullopt,
+                .is_recognised = core::is_loop(row.verdict)};
+    if (geometry->match_from_query)
+      place.keyframe_from_body = rigid_part(*geometry->match_from_query);
+    answer.places.push_back(place);
+  }
   return answer;
 }
 

@@ -31,7 +31,7 @@ class LoopClosing {
 
  private:
   LoopAnswer answer(const FindLoops& question);
-  // Which place of the whole map is this? The judge of loops decides.
+  // Which places of the whole map may this be? The judge of loops says what it recognises.
   LoopAnswer answer(const FindPlace& question);
 
   Config config_;

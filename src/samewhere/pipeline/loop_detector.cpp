@@ -40,15 +40,13 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
                                                      core::Timings& timings) {
   const core::ScopedTimer timer(timings, "recognise");
   const core::Descriptor descriptor = describe(view.frame, image);
-  constexpr int kNoWindow = 0;
   const MapKnowledge nothing{
       [](const core::Candidate&, const core::Sim3&) { return std::nullopt; }};
   verify::Config looks_alone = settings_.verify;
   looks_alone.min_views = 1;
   looks_alone.require_pose = false;  // whoever tracks the view among the place's points finds it
   std::vector<core::LedgerRow> rows;
-  for (const auto& candidate :
-       retrieve::compare(descriptor, retriever_.search(descriptor, kNoWindow)))
+  for (const auto& candidate : retrieve::compare(descriptor, retriever_.search_places(descriptor)))
     rows.push_back(judged(candidate, view, nothing, looks_alone));
   return rows;
 }

@@ -28,7 +28,7 @@ void Mapping::take(const ToMapping& message, const MappingLink::Reply& reply) {
 void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
   give_up_map();
   apply(map::start_map(map_, message.view, core::Rigid3{}));
-  reply({.map = map_, .place = {}});
+  reply({.map = map_, .places = {}});
   ask_for_loops(message.image);
   keep_map();
 }
@@ -38,7 +38,7 @@ void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& re
   apply(map::start_map(map_, message.views));
   connect_newest();
   refine_newest();
-  reply({.map = map_, .place = {}});
+  reply({.map = map_, .places = {}});
   ask_for_loops(message.image);
   keep_map();
 }
@@ -53,7 +53,7 @@ void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) 
                                       : message.tracked));
   }
   connect_newest();
-  reply({.map = map_, .place = {}});
+  reply({.map = map_, .places = {}});
   refine_newest();
   ask_for_loops(message.image);
   full_bundles_.begin(map_);
@@ -67,7 +67,7 @@ void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
   loops_.send(message);
   const LoopAnswer answer = loops_.receive();
   note(answer);
-  reply({.map = map_, .place = answer.place});
+  reply({.map = map_, .places = answer.places});
 }
 
 void Mapping::take(const EndOfInput& message, const MappingLink::Reply& /*reply*/) {

@@ -43,7 +43,7 @@ struct AddKeyframe {
   std::vector<core::FramePose> frames;  // since the last AddKeyframe, its own the last of them
 };
 
-// Lost: which place of the whole map does the view show?
+// Lost: which places of the whole map may the view show?
 struct FindPlace {
   features::View view;
   cv::Mat image;
@@ -56,16 +56,17 @@ struct EndOfInput {
 
 using ToMapping = std::variant<StartMap, StartMapByMotion, AddKeyframe, FindPlace, EndOfInput>;
 
-// Where somebody who was lost is.
+// Where somebody who is lost may be.
 struct Place {
   core::KeyframeId keyframe;
   std::optional<core::Rigid3> keyframe_from_body;  // none: views without depth do not tell
+  bool is_recognised = false;  // the judge takes the two for one place; else it only looks alike
 };
 
 // --- Mapping to tracking.
 struct MapAnswer {
   scene::MapVersion map;
-  std::optional<Place> place;  // to FindPlace, if there is one
+  std::vector<Place> places;  // to FindPlace
 };
 
 // --- Mapping to loop closing.
@@ -82,7 +83,7 @@ using ToLoopClosing = std::variant<FindLoops, FindPlace>;
 // --- Loop closing to mapping.
 struct LoopAnswer {
   std::vector<scene::LoopEdge> loops;          // accepted; their keyframes may be culled by now
-  std::optional<Place> place;                  // to FindPlace, if there is one
+  std::vector<Place> places;                   // to FindPlace
   std::optional<core::Descriptor> descriptor;  // of a view that is remembered from now on
   core::Ledger rows;                           // of all candidates that were judged
 };

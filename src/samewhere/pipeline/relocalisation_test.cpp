@@ -88,7 +88,7 @@ TEST(Relocalisation, AWalkFindsItselfInItsOwnMapAndLeavesItAsItIs) {
     ++num_measured;
     EXPECT_TRUE(is_right(*poses[i], walk, 20 + i)) << "frame " << 20 + i;
   }
-  EXPECT_GE(num_measured, 18) << "of 20";
+  EXPECT_GE(num_measured, 15) << "of 20: the first few are there to make sure";
   EXPECT_EQ(second.map().number, first.map().number) << "the map stays as it is";
   EXPECT_EQ(second.map().keyframes.size(), first.map().keyframes.size());
 }
@@ -103,7 +103,8 @@ TEST(Relocalisation, ALaterSessionGrowsTheMapFromWhereItIsRecognised) {
   for (std::size_t i = 10; i < walk.frames.size(); ++i)
     second.feed(with_id(walk.frames[i], i - 10, 1));
   second.finish();
-  EXPECT_EQ(second.frames()[0].status, core::FrameStatus::kResumed);
+  const auto first_sure = static_cast<std::size_t>(config.track.lost_views_to_resume - 1);
+  EXPECT_EQ(second.frames()[first_sure].status, core::FrameStatus::kResumed);
   ASSERT_GT(second.map().keyframes.size(), first.map().keyframes.size());
   EXPECT_EQ(second.map().keyframes.back().view.frame.session(), 1);
   const auto poses = poses_of(second);
@@ -146,7 +147,7 @@ TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
     ++num_measured;
     EXPECT_TRUE(is_right(*poses[i], walk, positions[i])) << "frame " << positions[i] << " again";
   }
-  EXPECT_GE(num_measured, 12) << "of 15";
+  EXPECT_GE(num_measured, 10) << "of 15: the first few are there to make sure";
 }
 
 TEST(Relocalisation, NobodyIsFoundWhereHeCannotHaveGot) {

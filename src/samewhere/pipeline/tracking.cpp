@@ -36,6 +36,7 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
     : config_(config),
       tracker_({config.track, config.features, config.optimize,
                 static_cast<std::uint64_t>(config.seed)}),
+      place_finder_(config_, tracker_),
       mapping_(mapping) {
   if (depth_from == DepthFrom::kMotion) {
     starter_.emplace(track::StartSettings{config.track.start, config.features,
@@ -79,15 +80,13 @@ void Tracking::finish() {
 std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
                                                  const features::View& view) {
   if (map_.keyframes.empty()) return start(frame, view);
-  auto tracked = locate_in_map(view);
-  if (!tracked && !last_) {
-    tracked = relocalise(frame, view);
-    if (!tracked && is_start_doubtful()) {
-      if (auto started = start_anew(frame, view)) return started;
-    }
+  auto tracked = last_ ? locate_in_map(view) : relocalise(frame, view);
+  if (!tracked && !last_ && is_start_doubtful()) {
+    if (auto started = start_anew(frame, view)) return started;
   }
   num_lost_ = tracked ? 0 : num_lost_ + 1;
   if (tracked) {
+    place_finder_.forget();
     if (starter_) starter_->forget();
     follow(*tracked);
     remember(*tracked);
@@ -110,17 +109,12 @@ std::optional<map::TrackedView> Tracking::locate_in_map(const features::View& vi
     see_kept();
     try_again(view, best);
   }
-  if (best && !last_) {
-    if (is_weak(*best)) return std::nullopt;  // who was lost does not trust a weak pose
-    best->pose.status = core::FrameStatus::kResumed;
-  }
   return best;
 }
 
 std::optional<map::TrackedView> Tracking::track_from_last(const features::View& view) {
   if (local_map_.size() == 0) return std::nullopt;  // nobody knows where to look
-  const auto track = last_ ? tracker_.track(view, local_map_, guessed_pose())
-                           : tracker_.track_anywhere(view, local_map_);
+  const auto track = tracker_.track(view, local_map_, guessed_pose());
   if (!track) return std::nullopt;
   return tracked_view(view, *track);
 }
@@ -139,46 +133,48 @@ std::optional<map::TrackedView> Tracking::relocalise(const core::Frame& frame,
   map_ = std::move(answer.map);
   if (has_changed && local_map_.size() > 0)
     look_around(holder_of(map_, local_map_.reference).keyframe);
-  if (!answer.place) return std::nullopt;
-  const auto& [keyframe, keyframe_from_body] = *answer.place;
-  const scene::Holder match = holder_of(map_, keyframe);
-  const scene::LocalMap around =
-      scene::build_local_map(map_, match.keyframe, config_.map.max_neighbours);
-  const auto track =
-      keyframe_from_body
-          ? tracker_.track(view, around, match.holder_from_keyframe * *keyframe_from_body)
-          : tracker_.track_anywhere(view, around);
-  if (!track || track->pose.status == core::FrameStatus::kWeak || !is_within_reach(track->pose))
-    return std::nullopt;
-  local_map_ = around;
-  map::TrackedView tracked = tracked_view(view, *track);
+  // where he was last is a place like any other
+  if (local_map_.size() > 0) answer.places.push_back({local_map_.reference, std::nullopt, true});
+  auto found =
+      place_finder_.look(view, map_, answer.places, num_views_to_resume(view.stamp_s),
+                         [this](const core::FramePose& pose) { return is_within_reach(pose); });
+  if (!found) return std::nullopt;
+  local_map_ = std::move(found->around);
+  map::TrackedView tracked = tracked_view(view, found->track);
   tracked.pose.status = core::FrameStatus::kResumed;
   return tracked;
 }
 
-bool Tracking::is_within_reach(const core::FramePose& pose) const {
-  constexpr double kAnyhow_m = 0.5;  // the map may have moved
+const core::FramePose* Tracking::last_measured() const {
   const auto last = std::find_if(frames_.rbegin(), frames_.rend(),
                                  [](const core::FramePose& frame) { return frame.is_measured; });
-  if (last == frames_.rend() || is_without_depth(map_)) return true;
+  return last == frames_.rend() ? nullptr : &*last;
+}
+
+bool Tracking::is_within_reach(const core::FramePose& pose) const {
+  constexpr double kAnyhow_m = 0.5;  // the map may have moved
+  const core::FramePose* last = last_measured();
+  if (last == nullptr || is_without_depth(map_)) return true;
   const double way_m = (world_from(pose).translation - world_from(*last).translation).norm();
   return way_m <= kAnyhow_m + config_.track.max_speed_m_s * (pose.stamp_s - last->stamp_s);
 }
 
+// Who looked away for a moment is near where he was.
+int Tracking::num_views_to_resume(double stamp_s) const {
+  constexpr double kMoment_s = 1.0;
+  const core::FramePose* last = last_measured();
+  const bool is_near = last != nullptr && stamp_s - last->stamp_s <= kMoment_s;
+  return is_near ? 1 : config_.track.lost_views_to_resume;
+}
+
 void Tracking::follow(map::TrackedView& tracked) {
-  std::map<core::KeyframeId, int> num_shown;
-  for (const auto& [feature, landmark] : tracked.landmarks) {
-    const scene::Landmark& shown = survivor_of(map_, landmark);
-    if (!is_live(shown)) continue;
-    for (const auto& observation : shown.observations) ++num_shown[observation.keyframe];
-  }
-  const auto most =
-      std::max_element(num_shown.begin(), num_shown.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most == num_shown.end()) return;
-  if (most->first != local_map_.reference) look_around(most->first);
+  std::vector<core::LandmarkId> seen;
+  for (const auto& [feature, landmark] : tracked.landmarks) seen.push_back(landmark);
+  const auto most = keyframe_showing_most(map_, seen);
+  if (!most) return;
+  if (*most != local_map_.reference) look_around(*most);
   core::FramePose& pose = tracked.pose;
-  if (most->first != pose.reference_keyframe) pose = relative_to(most->first, pose);
+  if (*most != pose.reference_keyframe) pose = relative_to(*most, pose);
 }
 
 core::FramePose Tracking::relative_to(core::KeyframeId reference, core::FramePose pose) const {
@@ -248,6 +244,7 @@ bool Tracking::is_start_doubtful() const {
 std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
                                                      const features::View& view) {
   if (!starter_ && num_lost_ < config_.track.lost_frames_to_restart) return std::nullopt;
+  if (place_finder_.has_fresh_place(num_views_to_resume(view.stamp_s))) return std::nullopt;
   return start(frame, view);
 }
 

@@ -11,6 +11,7 @@
 #include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/messages.hpp>
+#include <samewhere/pipeline/place_finder.hpp>
 #include <samewhere/scene/local_map.hpp>
 #include <samewhere/scene/map_file.hpp>
 #include <samewhere/track/starter.hpp>
@@ -50,12 +51,13 @@ class Tracking {
   std::optional<map::TrackedView> track_from_last(const features::View& view);
   // The same again, if the map has got nearer; the better of both.
   void try_again(const features::View& view, std::optional<map::TrackedView>& best);
-  // Lost: which place of the whole map is this? Then tracking must find a pose there that is not
-  // weak.
+  // Lost: which place of the whole map is this?
   std::optional<map::TrackedView> relocalise(const core::Frame& frame, const features::View& view);
   // Whether one can have got there since the last pose. What lies beyond is another place that
   // looks like this one.
   bool is_within_reach(const core::FramePose& pose) const;
+  const core::FramePose* last_measured() const;  // nullptr: none in this session
+  int num_views_to_resume(double stamp_s) const;
   // The reference goes along with the camera: it is the keyframe that shows most of what the view
   // shows, however old, and the local map is what lies around it.
   void follow(map::TrackedView& tracked);
@@ -98,6 +100,7 @@ class Tracking {
   Config config_;
   core::Timings timings_;
   track::Tracker tracker_;
+  PlaceFinder place_finder_;
   std::optional<track::Starter> starter_;  // one camera
   MappingLink& mapping_;
 

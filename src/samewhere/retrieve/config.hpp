@@ -13,6 +13,8 @@ struct Config {
   double window_s = 5.0;
   int window_frames = -1;
   int place_frames = 0;
+  int lost_candidates = 8;
+  int lost_place_frames = 30;
 
   // sampled search and every_queue only, section 3.1.4 of the published method
   int num_draws = 50;           // L
@@ -38,6 +40,10 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("place_frames", config.place_frames,
         {.help = "of views closer than this many frames only the best is a candidate; 0: all are",
          .min = 0});
+  visit("lost_candidates", config.lost_candidates,
+        {.help = "num_candidates for a view that is lost", .min = 1, .max = 1000});
+  visit("lost_place_frames", config.lost_place_frames,
+        {.help = "place_frames for a view that is lost", .min = 0});
   visit("num_draws", config.num_draws,
         {.help = "sampled search: L, queues drawn per query", .min = 1, .max = 1000000});
   visit("min_similarity", config.min_similarity,

@@ -43,15 +43,24 @@ core::Descriptor Retriever::view(int position) const {
 }
 
 std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor) const {
-  return search(descriptor, config_.window_frames);
+  check(descriptor);
+  const int num_allowed = store_.num_older(descriptor.frame, config_.window_frames);
+  return views_at(best_places(store_, scored(descriptor, num_allowed), config_));
 }
 
-std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor,
-                                         int window_frames) const {
+std::vector<FoundView> Retriever::search_places(const core::Descriptor& descriptor) const {
   check(descriptor);
-  const int num_allowed = store_.num_older(descriptor.frame, window_frames);
+  Config lost = config_;
+  lost.num_candidates = config_.lost_candidates;
+  lost.place_frames = config_.lost_place_frames;
+  constexpr int kNoWindow = 0;
+  const int num_allowed = store_.num_older(descriptor.frame, kNoWindow);
+  return views_at(best_places(store_, scored(descriptor, num_allowed), lost));
+}
+
+std::vector<FoundView> Retriever::views_at(const std::vector<ScoredPosition>& positions) const {
   std::vector<FoundView> found;
-  for (const ScoredPosition& best : best_places(store_, scored(descriptor, num_allowed), config_)) {
+  for (const ScoredPosition& best : positions) {
     const std::span<const float> vector = store_.vector(best.position);
     found.push_back({store_.frame(best.position), {vector.begin(), vector.end()}});
   }

@@ -42,8 +42,9 @@ class Retriever {
   // nothing; the draws depend on seed and query frame only. The query need not have been added.
   // Throws ContractError as add().
   std::vector<FoundView> search(const core::Descriptor& descriptor) const;
-  // The same with another window: who is lost may be where he was a moment ago.
-  std::vector<FoundView> search(const core::Descriptor& descriptor, int window_frames) const;
+  // For who is lost: he may be where he was a moment ago, and wants to know places that look alike
+  // rather than one place many times: no window, lost_candidates, lost_place_frames.
+  std::vector<FoundView> search_places(const core::Descriptor& descriptor) const;
   // The search and then the exact similarity.
   std::vector<core::Candidate> query(const core::Descriptor& descriptor) const;
 
@@ -63,6 +64,7 @@ class Retriever {
  private:
   void check(const core::Descriptor& descriptor) const;
   std::vector<ScoredPosition> scored(const core::Descriptor& descriptor, int num_allowed) const;
+  std::vector<FoundView> views_at(const std::vector<ScoredPosition>& positions) const;
 
   Config config_;
   std::uint64_t seed_;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstring>
+#include <map>
 #include <set>
 
 #include <samewhere/scene/local_map.hpp>
@@ -40,6 +42,21 @@ LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, int 
     local.octave.push_back(landmark.octave);
   }
   return local;
+}
+
+std::optional<core::KeyframeId> keyframe_showing_most(
+    const MapVersion& map, const std::vector<core::LandmarkId>& landmarks) {
+  std::map<core::KeyframeId, int> num_shown;
+  for (const core::LandmarkId landmark : landmarks) {
+    const Landmark& shown = survivor_of(map, landmark);
+    if (!is_live(shown)) continue;
+    for (const auto& observation : shown.observations) ++num_shown[observation.keyframe];
+  }
+  const auto most =
+      std::max_element(num_shown.begin(), num_shown.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == num_shown.end()) return std::nullopt;
+  return most->first;
 }
 
 }  // namespace samewhere::scene

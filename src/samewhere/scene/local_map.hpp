@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <samewhere/scene/map_version.hpp>
@@ -21,5 +22,10 @@ struct LocalMap {
 // Landmarks of the reference and of up to `max_neighbours` keyframes that share most landmarks with
 // it, ascending by id.
 LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, int max_neighbours);
+
+// The keyframe that shows most of these landmarks, however old: what lies around it is the local
+// map of who sees them. Nothing if none shows any.
+std::optional<core::KeyframeId> keyframe_showing_most(
+    const MapVersion& map, const std::vector<core::LandmarkId>& landmarks);
 
 }  // namespace samewhere::scene

@@ -96,6 +96,8 @@ struct Config {
   int weak_inliers = 40;
   int sure_inliers = 100;
   double max_speed_m_s = 3.0;
+  double max_lost_rival_ratio = 0.75;
+  int lost_views_to_resume = 5;
   int lost_frames_to_restart = 30;
   StartConfig start;
   DriftConfig drift;
@@ -127,6 +129,16 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
                  "without depth there are no metres, and no limit",
          .min = 0.01,
          .max = 1000.0});
+  visit("max_lost_rival_ratio", config.max_lost_rival_ratio,
+        {.help = "who is lost is found nowhere while another place of the map explains more than "
+                 "this share of the inliers; 1: the best place is taken",
+         .min = 0.0,
+         .max = 1.0});
+  visit(
+      "lost_views_to_resume", config.lost_views_to_resume,
+      {.help = "who is lost is found once so many views in a row are explained by one place alone",
+       .min = 1,
+       .max = 1000});
   visit("lost_frames_to_restart", config.lost_frames_to_restart,
         {.help = "with depth, lost for so many frames in a map of fewer than "
                  "start.provisional_keyframes: it is given up for a new start",

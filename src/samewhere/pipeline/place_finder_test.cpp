@@ -1,0 +1,101 @@
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/features/test_world.hpp>
+#include <samewhere/map/mapper.hpp>
+#include <samewhere/pipeline/place_finder.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+constexpr int kNumViews = 5;
+const core::KeyframeId kHere(0);
+const core::KeyframeId kThere(1);
+
+bool anywhere(const core::FramePose& /*pose*/) { return true; }
+
+// One place twice in one map, 50 m apart, but for `different` of the points there, which look like
+// nothing here.
+scene::MapVersion map_with_twins(const features::TestWorld& here, double different) {
+  features::TestWorld there = here;
+  core::Random random(9);
+  for (auto& descriptor : there.descriptors) {
+    if (random.uniform(0.0, 1.0) >= different) continue;
+    for (auto& byte : descriptor) byte = static_cast<std::uint8_t>(random.index(256));
+  }
+  scene::MapVersion map;
+  map = apply(map, map::start_map(map, features::test_view(here, 0, {}), {}));
+  const core::Rigid3 far{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
+  return apply(map, map::start_map(map, features::test_view(there, 1, {}), far));
+}
+
+class TestPlaceFinder : public testing::Test {
+ protected:
+  // View `frame` of somebody who stands still in front of what the first keyframe shows.
+  std::optional<FoundPlace> look(const scene::MapVersion& map, int frame,
+                                 const std::vector<Place>& places,
+                                 const IsWithinReach& is_within_reach = anywhere) {
+    return finder_.look(features::test_view(world_, 10 + frame, {}), map, places, kNumViews,
+                        is_within_reach);
+  }
+
+  features::TestWorld world_ = features::test_world(5);
+  Config config_;
+  track::Tracker tracker_{{config_.track, config_.features, config_.optimize, 0}};
+  PlaceFinder finder_{config_, tracker_};
+  std::vector<Place> both_ = {{kThere, core::Rigid3{}, true}, {kHere, core::Rigid3{}, true}};
+};
+
+TEST_F(TestPlaceFinder, APlaceThatTheMapHasTwiceIsNeverFound) {
+  const scene::MapVersion map = map_with_twins(world_, 0.0);
+  for (int i = 0; i < 4 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+}
+
+TEST_F(TestPlaceFinder, WhereTheTwinsDifferTheRightOneIsFoundOnceEnoughViewsHaveSpoken) {
+  const scene::MapVersion map = map_with_twins(world_, 0.5);
+  for (int i = 0; i < kNumViews - 1; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  const auto found = look(map, kNumViews - 1, both_);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
+  EXPECT_LT(found->track.pose.reference_from_frame.translation.norm(), 0.02);
+}
+
+TEST_F(TestPlaceFinder, ARivalThatNobodyMentionsAnyMoreStillCounts) {
+  const scene::MapVersion map = map_with_twins(world_, 0.0);
+  const std::vector<Place> one = {both_[1]};
+  EXPECT_FALSE(look(map, 0, both_));
+  for (int i = 1; i < 4 * kNumViews; ++i) EXPECT_FALSE(look(map, i, one)) << "view " << i;
+}
+
+TEST_F(TestPlaceFinder, WhoWalksOutOfTheLookalikeIsFound) {
+  const scene::MapVersion map = map_with_twins(world_, 0.0);
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  const scene::MapVersion different = map_with_twins(world_, 0.7);
+  std::optional<FoundPlace> found;
+  for (int i = 0; i < 2 * kNumViews && !found; ++i) found = look(different, 20 + i, {});
+  ASSERT_TRUE(found) << "what he saw in the look-alike is forgotten in the end";
+  EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
+}
+
+TEST_F(TestPlaceFinder, APlaceBeyondReachIsNoRival) {
+  const scene::MapVersion map = map_with_twins(world_, 0.0);
+  const IsWithinReach near_here = [](const core::FramePose& pose) {
+    return pose.reference_keyframe == kHere;
+  };
+  std::optional<FoundPlace> found;
+  for (int i = 0; i < kNumViews; ++i) found = look(map, i, both_, near_here);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
+}
+
+TEST_F(TestPlaceFinder, APlaceThatTheJudgeDidNotRecogniseIsARivalAndIsNotFound) {
+  const scene::MapVersion map = map_with_twins(world_, 0.5);
+  std::vector<Place> looks_alike = both_;
+  looks_alike[1].is_recognised = false;
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, looks_alike)) << "view " << i;
+}
+
+}  // namespace
+}  // namespace samewhere::pipeline
