@@ -89,6 +89,24 @@ std::vector<core::Frame> walk() {
   return frames;
 }
 
+// The same way past two walls, the lower one nearer, for a camera without depth: one wall alone
+// would have two explanations.
+std::vector<core::Frame> walk_without_depth() {
+  const cv::Mat wall = painted_wall();
+  const cv::Rect lower(0, kHeight_px / 2, kWidth_px, kHeight_px / 2);
+  std::vector<core::Frame> frames = walk();
+  for (auto& frame : frames) {
+    const auto position =
+        static_cast<int>(std::min(frame.id.index(), kNumFrames - frame.id.index()));
+    frame.depth_m.reset();
+    if (position * kStep_px * 3 / 2 + kWidth_px > wall.cols) continue;
+    const cv::Rect nearer = lower + cv::Point(position * kStep_px * 3 / 2, 0);
+    frame.images[0] = frame.images[0].clone();
+    wall(nearer).copyTo(frame.images[0](lower));
+  }
+  return frames;
+}
+
 // All that a run found, as the bytes that are written.
 struct Found {
   std::string trajectory;
@@ -100,12 +118,12 @@ struct Found {
 };
 
 Found found_by(const std::vector<core::Frame>& frames, const Config& config,
-               const core::Dawdle& dawdle = {}) {
+               const core::Dawdle& dawdle = {}, DepthFrom depth_from = DepthFrom::kSensor) {
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("samewhere_slam_threads_" + std::to_string(getpid()) + ".sw");
   std::filesystem::remove(path);
   std::optional<MapSaver> saver;
-  Slam slam(config, DepthFrom::kSensor,
+  Slam slam(config, depth_from,
             {.keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
              .dawdle = dawdle});
   saver.emplace(path, config, slam.describer_checksum());
@@ -191,6 +209,41 @@ TEST(SlamThreads, LagAndDelayChangeTheResultButNotWithTheThreads) {
   const Found expected = found_by(frames, in_turn);
   EXPECT_NE(expected.trajectory, found_by(frames, config_of(false)).trajectory);
   expect_same(found_by(frames, in_threads, asleep(1)), expected, "asleep");
+}
+
+TEST(SlamThreads, WithoutDepthTheyFindToTheByteWhatOneThreadFinds) {
+  const std::vector<core::Frame> frames = walk_without_depth();
+  const Found in_turn = found_by(frames, config_of(false), {}, DepthFrom::kMotion);
+  EXPECT_GT(in_turn.num_keyframes, 3U) << "no map was started";
+  expect_same(found_by(frames, config_of(true), {}, DepthFrom::kMotion), in_turn, "in threads");
+  expect_same(found_by(frames, config_of(true), asleep(3), DepthFrom::kMotion), in_turn, "asleep");
+}
+
+// A later session in the map of the first half of the way, as trajectory and ledger.
+std::string found_in_known_map(const scene::StoredMap& known, const Config& config,
+                               const core::Dawdle& dawdle = {}) {
+  Slam slam(config, known, Slam::Use::kExtend, {.dawdle = dawdle});
+  std::uint64_t number = 0;
+  for (core::Frame frame : walk()) {
+    frame.id = core::FrameId(number++, slam.session());
+    slam.feed(frame);
+  }
+  slam.finish();
+  EXPECT_GT(slam.map().keyframes.size(), known.map.keyframes.size()) << "nobody was found";
+  return core::tum_text(trajectory_of(slam.map(), slam.frames())) +
+         report::loops_json(slam.ledger());
+}
+
+TEST(SlamThreads, InAKnownMapTheyFindToTheByteWhatOneThreadFinds) {
+  const std::vector<core::Frame> frames = walk();
+  Slam first(config_of(false));
+  for (std::size_t i = 0; i < frames.size() / 3; ++i) first.feed(frames[i]);
+  first.finish();
+  const scene::StoredMap known{
+      first.map(), {.frames = first.frames(), .descriptors = first.descriptors(), .ledger = {}}};
+  const std::string in_turn = found_in_known_map(known, config_of(false));
+  EXPECT_EQ(found_in_known_map(known, config_of(true)), in_turn);
+  EXPECT_EQ(found_in_known_map(known, config_of(true), asleep(4)), in_turn);
 }
 
 void run_to_the_end(const std::vector<core::Frame>& frames, const SlamHooks& hooks) {

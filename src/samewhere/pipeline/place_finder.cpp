@@ -17,6 +17,8 @@ constexpr std::size_t kRememberedViews = 10;
 constexpr std::size_t kMaxHypotheses = 8;
 // From so many times the distance, or from this part of it, a landmark looks as it was described.
 constexpr double kSameLook = 1.3;
+// Of the landmarks that should be in sight at the place that shows most.
+constexpr double kMinTestable = 0.5;
 constexpr double kMargin_px = 8.0;  // of the image: no feature is found closer to its border
 
 bool is_inside(const Eigen::Vector2d& pixel, const cv::Size& size_px) {
@@ -52,6 +54,22 @@ core::KeyframeId nearest_keyframe(const scene::MapVersion& map, const FoundPlace
   for (const auto& match : found.track.matches)
     seen.push_back(found.around.landmarks[static_cast<std::size_t>(match.first)]);
   return keyframe_showing_most(map, seen).value_or(found.around.reference);
+}
+
+int num_in_sight(const scene::LocalMap& around, const features::View& view,
+                 const core::Rigid3& reference_from_body) {
+  const core::Rigid3 camera_from_reference =
+      inverse(reference_from_body * view.rig->body_from_camera[0]);
+  int count = 0;
+  for (int i = 0; i < around.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Eigen::Vector3d point = camera_from_reference * around.points_in_reference[k];
+    const double nearer = around.range_m[k] / point.norm();
+    const bool looks_as_before = nearer < kSameLook && 1.0 / nearer < kSameLook;
+    const auto pixel = geometry::project_undistorted(view.rig->cameras[0], point);
+    if (looks_as_before && pixel && is_inside(*pixel, view.image_size_px)) ++count;
+  }
+  return count;
 }
 
 }  // namespace
@@ -120,10 +138,12 @@ void PlaceFinder::think_of(const Place& place, const features::View& view,
 
 // Each place once, as it explains most.
 void PlaceFinder::merge(const scene::MapVersion& map) {
-  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) {
-                     return a.explained.back().num_inliers > b.explained.back().num_inliers;
-                   });
+  const auto num_inliers = [](const Hypothesis& hypothesis) {
+    return hypothesis.found ? hypothesis.found->track.pose.num_inliers : 0;
+  };
+  std::stable_sort(
+      hypotheses_.begin(), hypotheses_.end(),
+      [&](const Hypothesis& a, const Hypothesis& b) { return num_inliers(a) > num_inliers(b); });
   std::vector<Hypothesis> distinct;
   for (Hypothesis& next : hypotheses_) {
     const auto same = std::find_if(distinct.begin(), distinct.end(), [&](const Hypothesis& other) {
@@ -144,25 +164,41 @@ void PlaceFinder::merge(const scene::MapVersion& map) {
   if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);
 }
 
+// Who is not found there is judged by where he was a view ago.
 PlaceFinder::Explained PlaceFinder::explained(const Hypothesis& hypothesis,
-                                              const features::View& view) const {
-  if (!hypothesis.found) return {};
-  const auto& [around, track] = *hypothesis.found;
-  const core::Rigid3 camera_from_reference =
-      inverse(track.pose.reference_from_frame * view.rig->body_from_camera[0]);
-  int num_expected = 0;
-  for (int i = 0; i < around.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const Eigen::Vector3d point = camera_from_reference * around.points_in_reference[k];
-    const double nearer = around.range_m[k] / point.norm();
-    const bool looks_as_before = nearer < kSameLook && 1.0 / nearer < kSameLook;
-    const auto pixel = geometry::project_undistorted(view.rig->cameras[0], point);
-    if (looks_as_before && pixel && is_inside(*pixel, view.image_size_px)) ++num_expected;
+                                              const features::View& view,
+                                              const scene::MapVersion& map) const {
+  if (hypothesis.found) {
+    const auto& [around, track] = *hypothesis.found;
+    const int num_inliers = track.pose.num_inliers;
+    const int num_expected = num_in_sight(around, view, track.pose.reference_from_frame);
+    return {num_inliers, std::max(num_expected, num_inliers)};
   }
-  return {track.pose.num_inliers, std::max(num_expected, track.pose.num_inliers)};
+  const Place& last = hypothesis.place;
+  const scene::Holder holder = holder_of(map, last.keyframe);
+  const scene::LocalMap around = build_local_map(map, holder.keyframe, config_.map.max_neighbours);
+  return {0, num_in_sight(
+                 around, view,
+                 holder.holder_from_keyframe * last.keyframe_from_body.value_or(core::Rigid3{}))};
 }
 
-// Of the views that both were asked about.
+// A place whose map ends where the view looks now says nothing about it, for or against.
+void PlaceFinder::record(const features::View& view, const scene::MapVersion& map) {
+  std::vector<Explained> of_view;
+  int most_expected = 0;
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    of_view.push_back(explained(hypothesis, view, map));
+    most_expected = std::max(most_expected, of_view.back().num_expected);
+  }
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    auto& history = hypotheses_[i].explained;
+    if (!history.empty() && of_view[i].num_expected < kMinTestable * most_expected) continue;
+    history.push_back(of_view[i]);
+    if (history.size() > kRememberedViews) history.erase(history.begin());
+  }
+}
+
+// Of as many views as both were asked about.
 bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const {
   const std::size_t num_views = std::min(other.explained.size(), hypothesis.explained.size());
   const Explained by_other = other.sum_of_last(num_views);
@@ -188,11 +224,7 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
                                             const IsWithinReach& is_within_reach) {
   for (Hypothesis& known : hypotheses_) look_at(known.place, view, map, is_within_reach, known);
   for (const Place& place : places) think_of(place, view, map, is_within_reach);
-  for (Hypothesis& hypothesis : hypotheses_) {
-    hypothesis.explained.push_back(explained(hypothesis, view));
-    if (hypothesis.explained.size() > kRememberedViews)
-      hypothesis.explained.erase(hypothesis.explained.begin());
-  }
+  record(view, map);
   merge(map);
   for (Hypothesis& hypothesis : hypotheses_) {
     const bool is_seen = hypothesis.found && hypothesis.place.is_recognised &&

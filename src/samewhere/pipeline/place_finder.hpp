@@ -53,7 +53,7 @@ class PlaceFinder {
   };
   struct Hypothesis {
     Place place;                       // as it explained a view last
-    std::vector<Explained> explained;  // of each view since it was thought of, of the last few
+    std::vector<Explained> explained;  // of the last few views that could speak about it
     std::optional<FoundPlace> found;   // of this view
 
     Explained sum_of_last(std::size_t num_views) const;
@@ -69,7 +69,9 @@ class PlaceFinder {
   void think_of(const Place& place, const features::View& view, const scene::MapVersion& map,
                 const IsWithinReach& is_within_reach);
   void merge(const scene::MapVersion& map);
-  Explained explained(const Hypothesis& hypothesis, const features::View& view) const;
+  Explained explained(const Hypothesis& hypothesis, const features::View& view,
+                      const scene::MapVersion& map) const;
+  void record(const features::View& view, const scene::MapVersion& map);
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
 
   const Config& config_;
