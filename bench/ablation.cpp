@@ -1,0 +1,157 @@
+// ablation: what does each check of the judge buy? Finished runs are judged anew without it.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "program.hpp"
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/progress.hpp>
+#include <samewhere/evaluate/loop_check.hpp>
+#include <samewhere/pipeline/figures.hpp>
+#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/replay.hpp>
+#include <samewhere/pipeline/run_folder.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+struct Variant {
+  std::string name;
+  std::vector<std::string> assignments;  // that let all through where the check was
+};
+
+std::vector<Variant> variants() {
+  const std::string no_odometry = "verify.max_odometry_chi_square=1e9";
+  const std::string no_rival = "verify.max_rival_chi_square=1e9";
+  return {
+      {"nothing", {}},
+      {"inliers: 7 are enough", {"verify.min_inliers=7", "verify.min_matches=7"}},
+      {"spread", {"verify.min_spread_ratio=0"}},
+      {"both depths agree", {"verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}},
+      {"odometry gate", {no_odometry}},
+      {"rival: the last loop", {no_rival}},
+      {"odometry gate and rival", {no_odometry, no_rival}},
+      {"all but inliers",
+       {no_odometry, no_rival, "verify.min_spread_ratio=0", "verify.max_disagreement_m=100",
+        "verify.max_disagreement_rad=3.2"}}};
+}
+
+struct Counts {
+  int num_right = 0;
+  int num_wrong = 0;
+  int num_first = 0;  // of the wrong ones: the place was not in the map yet, nothing can be a rival
+  int num_unknown = 0;
+  int num_revisits = 0;
+  int num_closed = 0;
+};
+
+struct Recorded {
+  std::string folder;
+  core::Truth truth;
+  core::Ledger ledger;
+  double window_s = 0.0;
+};
+
+Recorded recorded(const std::string& folder) {
+  const pipeline::Config config = pipeline::config_of_run(folder);
+  const auto source = pipeline::open_source(config);
+  Recorded run{folder, source->truth(), pipeline::ledger_of_run(folder), config.retrieve.window_s};
+  if (!run.truth.places || run.truth.trajectory.empty())
+    throw core::InputError(folder + ": its source has no truth of places and poses, expected one");
+  return run;
+}
+
+// On an earlier visit: before the time in which views are no candidates for each other.
+bool was_seen_before(const core::Truth& truth, int query, double window_s) {
+  const auto stamp_s = [&](int i) { return truth.trajectory[static_cast<std::size_t>(i)].stamp_s; };
+  for (int earlier = 0; earlier < query && stamp_s(earlier) < stamp_s(query) - window_s;
+       ++earlier) {
+    if (truth.places->at(query, earlier) != core::PlaceTruth::kDifferent) return true;
+  }
+  return false;
+}
+
+void add(const core::Ledger& ledger, const core::Truth& truth, double window_s, Counts& counts) {
+  pipeline::StampOf stamp_of;
+  for (std::size_t i = 0; i < truth.trajectory.size(); ++i)
+    stamp_of[core::FrameId(i)] = truth.trajectory[i].stamp_s;
+  pipeline::SlamFindings findings;
+  pipeline::add_loops(ledger, stamp_of, findings);
+  const evaluate::LoopCheck check = evaluate::check_loops(findings.loops, truth);
+  counts.num_right += check.num_right;
+  counts.num_wrong += check.num_wrong;
+  counts.num_unknown += check.num_unknown;
+  counts.num_revisits += check.num_revisits;
+  counts.num_closed += check.num_closed;
+  for (const evaluate::CheckedLoop& checked : check.loops) {
+    const bool is_wrong = checked.truth == evaluate::LoopTruth::kWrong;
+    if (is_wrong && !was_seen_before(truth, checked.loop.query, window_s)) ++counts.num_first;
+  }
+}
+
+core::Ledger judged_anew(const Recorded& run, const std::vector<std::string>& assignments) {
+  const verify::Config config = pipeline::config_of_run(run.folder, assignments).verify;
+  core::Ledger ledger;
+  for (const auto& row : pipeline::replay(run.ledger, config))
+    ledger.push_back({row.before.candidate, row.after});
+  return ledger;
+}
+
+std::vector<std::string> row_of(const std::string& name, const Counts& counts) {
+  return {name,
+          std::to_string(counts.num_right),
+          std::to_string(counts.num_wrong),
+          std::to_string(counts.num_first),
+          std::to_string(counts.num_unknown),
+          fmt::format("{} of {}", counts.num_closed, counts.num_revisits)};
+}
+
+void measure(const std::vector<std::string>& folders, const std::string& csv_file) {
+  const std::vector<Variant> all = variants();
+  Counts as_it_was;
+  std::vector<Counts> counts(all.size());
+  core::Progress progress("runs", static_cast<int>(folders.size()));
+  int num_done = 0;
+  for (const std::string& folder : folders) {
+    const Recorded run = recorded(folder);
+    add(run.ledger, run.truth, run.window_s, as_it_was);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      add(judged_anew(run, all[i].assignments), run.truth, run.window_s, counts[i]);
+    progress.update(++num_done);
+  }
+  progress.finish();
+  Table table{
+      {"left out", "right", "wrong", "of these first look-alikes", "unknown", "revisits closed"},
+      {}};
+  table.rows.push_back(row_of("(the run itself)", as_it_was));
+  for (std::size_t i = 0; i < all.size(); ++i) table.rows.push_back(row_of(all[i].name, counts[i]));
+  publish(table, csv_file);
+}
+
+std::function<void()> set_up(CLI::App& app) {
+  const auto folders = std::make_shared<std::vector<std::string>>();
+  const auto csv_file = std::make_shared<std::string>();
+  app.name("ablation");
+  app.description(
+      "Loops that the judge would accept in finished runs with depth if one of its checks were "
+      "left "
+      "out, by replay: what no run measured behind a check passes, and what the graph of loops or "
+      "a "
+      "later loop made of them is not known. A first look-alike: nothing of the place was seen "
+      "on an earlier visit.");
+  app.add_option("RUN", *folders, "folders that `samewhere run` wrote, of sources with truth")
+      ->required();
+  app.add_option("--csv", *csv_file, "write the table to this file, too");
+  return [folders, csv_file] { measure(*folders, *csv_file); };
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
+}
