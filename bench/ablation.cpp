@@ -27,17 +27,17 @@ struct Variant {
 std::vector<Variant> variants() {
   const std::string no_odometry = "verify.max_odometry_chi_square=1e9";
   const std::string no_rival = "verify.max_rival_chi_square=1e9";
-  return {
-      {"nothing", {}},
-      {"inliers: 7 are enough", {"verify.min_inliers=7", "verify.min_matches=7"}},
-      {"spread", {"verify.min_spread_ratio=0"}},
-      {"both depths agree", {"verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}},
-      {"odometry gate", {no_odometry}},
-      {"rival: the last loop", {no_rival}},
-      {"odometry gate and rival", {no_odometry, no_rival}},
-      {"all but inliers",
-       {no_odometry, no_rival, "verify.min_spread_ratio=0", "verify.max_disagreement_m=100",
-        "verify.max_disagreement_rad=3.2"}}};
+  return {{"nothing", {}},
+          {"inliers: 7 are enough", {"verify.min_inliers=7", "verify.min_matches=7"}},
+          {"spread", {"verify.min_spread_ratio=0"}},
+          {"depths agree, where both views have some",
+           {"verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}},
+          {"odometry gate", {no_odometry}},
+          {"rival: the last loop", {no_rival}},
+          {"odometry gate and rival", {no_odometry, no_rival}},
+          {"all but inliers",
+           {no_odometry, no_rival, "verify.min_spread_ratio=0", "verify.max_disagreement_m=100",
+            "verify.max_disagreement_rad=3.2"}}};
 }
 
 struct Counts {

@@ -12,13 +12,15 @@
 namespace samewhere::core {
 
 // Two views that look alike, found by appearance only, or, foretold, because the views before them
-// matched: such a one may hang on a sequence, but proves nothing of it.
+// matched: such a one may hang on a sequence, but proves nothing of it. Of a lost view: if the
+// judge accepts it, it is a place where the view may have been taken, and no loop.
 struct Candidate {
   CandidateId id;
   FrameId query;
   FrameId match;            // older than query
   double similarity = 0.0;  // of the two descriptors, in [-1, 1]
   bool is_foretold = false;
+  bool is_lost = false;
 };
 
 // What geometry says about a candidate.

@@ -81,6 +81,7 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
   findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
   findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
   for (const auto* row : rows) {
+    if (row->candidate.is_lost) continue;  // a place, no loop
     if (has_matches(row->verdict)) {
       findings.matching.push_back({static_cast<int>(row->candidate.query.index()),
                                    static_cast<int>(row->candidate.match.index())});

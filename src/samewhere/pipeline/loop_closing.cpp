@@ -135,7 +135,7 @@ LoopAnswer LoopClosing::answer(const FindPlace& question) {
   answer.rows = detector_.recognise(question.image, question.view, timings_);
   for (const core::LedgerRow& row : answer.rows) {
     const auto& geometry = core::evidence_of(row.verdict).geometry;
-    if (!geometry) continue;
+    if (!geometry || geometry->num_inliers == 0) continue;
     Place place{.keyframe = keyframe_of_.at(row.candidate.match),
                 .keyframe_from_body = std::nullopt,
                 .is_recognised = core::is_loop(row.verdict)};

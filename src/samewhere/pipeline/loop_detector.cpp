@@ -46,8 +46,11 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
   looks_alone.min_views = 1;
   looks_alone.require_pose = false;  // whoever tracks the view among the place's points finds it
   std::vector<core::LedgerRow> rows;
-  for (const auto& candidate : retrieve::compare(descriptor, retriever_.search_places(descriptor)))
+  for (core::Candidate candidate :
+       retrieve::compare(descriptor, retriever_.search_places(descriptor))) {
+    candidate.is_lost = true;
     rows.push_back(judged(candidate, view, nothing, looks_alone));
+  }
   return rows;
 }
 

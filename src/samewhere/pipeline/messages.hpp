@@ -60,7 +60,7 @@ using ToMapping = std::variant<StartMap, StartMapByMotion, AddKeyframe, FindPlac
 struct Place {
   core::KeyframeId keyframe;
   std::optional<core::Rigid3> keyframe_from_body;  // none: views without depth do not tell
-  bool is_recognised = false;  // the judge takes the two for one place; else it only looks alike
+  bool is_recognised = false;  // by the judge, or he was there last; else it only looks alike
 };
 
 // --- Mapping to tracking.

@@ -12,12 +12,14 @@ namespace {
 // drift apart.
 constexpr double kOnePlaceRatio = 0.25;
 constexpr double kOnePlace_rad = 0.35;
-// Views that count: older ones would hold up who has walked out of a look-alike.
-constexpr std::size_t kRememberedViews = 10;
+// Views that count. Fewer would forget a place while the view looks beyond the end of its map; more
+// would hold up who has walked out of a look-alike.
+constexpr std::size_t kRememberedViews = 30;
 constexpr std::size_t kMaxHypotheses = 8;
 // From so many times the distance, or from this part of it, a landmark looks as it was described.
 constexpr double kSameLook = 1.3;
-// Of the landmarks that should be in sight at the place that shows most.
+// Of the landmarks that should be in sight at the place that shows most: with fewer, the map ends
+// there.
 constexpr double kMinTestable = 0.5;
 constexpr double kMargin_px = 8.0;  // of the image: no feature is found closer to its border
 
@@ -40,6 +42,12 @@ double median_distance(const FoundPlace& found) {
     distances.push_back((point - found.track.pose.reference_from_frame.translation).norm());
   }
   return core::median(std::move(distances)).value_or(0.0);
+}
+
+int num_inliers(const FoundPlace& found) { return found.track.pose.num_inliers; }
+
+Place place_of(const FoundPlace& found) {
+  return {found.track.pose.reference_keyframe, found.track.pose.reference_from_frame, false};
 }
 
 bool are_one_place(const scene::MapVersion& map, const Place& a, const Place& b,
@@ -74,76 +82,58 @@ int num_in_sight(const scene::LocalMap& around, const features::View& view,
 
 }  // namespace
 
-std::optional<FoundPlace> PlaceFinder::track_around(
-    core::KeyframeId keyframe, const features::View& view, const scene::MapVersion& map,
-    const std::optional<core::Rigid3>& keyframe_from_body) const {
-  FoundPlace found{build_local_map(map, keyframe, config_.map.max_neighbours), {}};
-  auto track = tracker_.track_anywhere(view, found.around);
-  if (keyframe_from_body) {
-    auto near = tracker_.track(view, found.around, *keyframe_from_body);
-    if (near && (!track || near->pose.num_inliers > track->pose.num_inliers))
-      track = std::move(near);
+void PlaceFinder::track_around(core::KeyframeId keyframe, const Place& place,
+                               const Question& question, Sight& sight) const {
+  const scene::MapVersion& map = question.map;
+  const scene::LocalMap around = build_local_map(map, keyframe, config_.map.max_neighbours);
+  const auto offer = [&](std::optional<track::Track> track) {
+    if (!track || !question.is_within_reach(track->pose)) return;
+    FoundPlace next{around, std::move(*track)};
+    const bool is_there = !place.keyframe_from_body ||
+                          are_one_place(map, place, place_of(next), median_distance(next));
+    auto& best = is_there ? sight.found : sight.elsewhere;
+    if (!best || num_inliers(next) > num_inliers(*best)) best = std::move(next);
+  };
+  if (place.keyframe_from_body) {
+    const core::Rigid3 guess =
+        inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, place);
+    offer(tracker_.track(question.view, around, guess));
   }
-  if (!track) return std::nullopt;
-  found.track = std::move(*track);
-  return found;
+  offer(tracker_.track_anywhere(question.view, around));
 }
 
-void PlaceFinder::look_at(const Place& place, const features::View& view,
-                          const scene::MapVersion& map, const IsWithinReach& is_within_reach,
-                          Hypothesis& hypothesis) const {
-  hypothesis.found.reset();
-  const scene::Holder holder = holder_of(map, place.keyframe);
-  std::optional<core::Rigid3> guess = place.keyframe_from_body;
-  if (guess) guess = holder.holder_from_keyframe * *guess;
-  auto found = track_around(holder.keyframe, view, map, guess);
-  if (!found) return;
-  const core::KeyframeId nearest = nearest_keyframe(map, *found);
-  if (nearest != found->around.reference) {
-    auto nearer = track_around(nearest, view, map,
-                               inverse(scene::world_from_body(map, nearest)) *
-                                   scene::world_from_body(map, found->around.reference) *
-                                   found->track.pose.reference_from_frame);
-    if (nearer && nearer->track.pose.num_inliers > found->track.pose.num_inliers)
-      found = std::move(nearer);
-  }
-  if (!is_within_reach(found->track.pose)) return;
-  hypothesis.place = {found->track.pose.reference_keyframe, found->track.pose.reference_from_frame,
-                      place.is_recognised};
-  hypothesis.found = std::move(found);
+PlaceFinder::Sight PlaceFinder::look_at(const Place& place, const Question& question) const {
+  const scene::MapVersion& map = question.map;
+  Sight sight;
+  const core::KeyframeId first = holder_of(map, place.keyframe).keyframe;
+  track_around(first, place, question, sight);
+  if (!sight.found) return sight;
+  const core::KeyframeId nearest = nearest_keyframe(map, *sight.found);
+  if (nearest != first) track_around(nearest, place_of(*sight.found), question, sight);
+  return sight;
 }
 
-PlaceFinder::Explained PlaceFinder::Hypothesis::sum_of_last(std::size_t num_views) const {
-  Explained sum;
-  for (std::size_t i = explained.size() - num_views; i < explained.size(); ++i) {
-    sum.num_inliers += explained[i].num_inliers;
-    sum.num_expected += explained[i].num_expected;
-  }
-  return sum;
-}
-
-void PlaceFinder::think_of(const Place& place, const features::View& view,
-                           const scene::MapVersion& map, const IsWithinReach& is_within_reach) {
+void PlaceFinder::think_of(const Place& place, const Question& question) {
   for (Hypothesis& known : hypotheses_) {
-    if (!known.found || !place.keyframe_from_body ||
-        !are_one_place(map, known.place, place, median_distance(*known.found)))
+    if (!known.found ||
+        !are_one_place(question.map, known.place, place, median_distance(*known.found)))
       continue;
     known.place.is_recognised |= place.is_recognised;
     return;
   }
-  Hypothesis next;
-  look_at(place, view, map, is_within_reach, next);
-  if (next.found) hypotheses_.push_back(std::move(next));
+  Sight sight = look_at(place, question);
+  if (!sight.found) return;
+  Hypothesis next{place_of(*sight.found), {}, std::move(sight.found)};
+  next.place.is_recognised = place.is_recognised;
+  hypotheses_.push_back(std::move(next));
 }
 
 // Each place once, as it explains most.
 void PlaceFinder::merge(const scene::MapVersion& map) {
-  const auto num_inliers = [](const Hypothesis& hypothesis) {
-    return hypothesis.found ? hypothesis.found->track.pose.num_inliers : 0;
-  };
-  std::stable_sort(
-      hypotheses_.begin(), hypotheses_.end(),
-      [&](const Hypothesis& a, const Hypothesis& b) { return num_inliers(a) > num_inliers(b); });
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) {
+                     return a.explained.back().num_inliers > b.explained.back().num_inliers;
+                   });
   std::vector<Hypothesis> distinct;
   for (Hypothesis& next : hypotheses_) {
     const auto same = std::find_if(distinct.begin(), distinct.end(), [&](const Hypothesis& other) {
@@ -158,9 +148,15 @@ void PlaceFinder::merge(const scene::MapVersion& map) {
     if (same->explained.size() < next.explained.size()) same->explained = next.explained;
   }
   hypotheses_ = std::move(distinct);
-  std::erase_if(hypotheses_, [](const Hypothesis& hypothesis) {
-    return hypothesis.sum_of_last(hypothesis.explained.size()).num_inliers == 0;
-  });
+  const auto sum = [](const Hypothesis& hypothesis) {
+    int num_inliers = 0;
+    for (const Explained& view : hypothesis.explained)
+      num_inliers += view.is_testable ? view.num_inliers : 0;
+    return num_inliers;
+  };
+  std::erase_if(hypotheses_, [&](const Hypothesis& hypothesis) { return sum(hypothesis) == 0; });
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+                   [&](const Hypothesis& a, const Hypothesis& b) { return sum(a) > sum(b); });
   if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);
 }
 
@@ -170,46 +166,52 @@ PlaceFinder::Explained PlaceFinder::explained(const Hypothesis& hypothesis,
                                               const scene::MapVersion& map) const {
   if (hypothesis.found) {
     const auto& [around, track] = *hypothesis.found;
-    const int num_inliers = track.pose.num_inliers;
     const int num_expected = num_in_sight(around, view, track.pose.reference_from_frame);
-    return {num_inliers, std::max(num_expected, num_inliers)};
+    return {track.pose.num_inliers, std::max(num_expected, track.pose.num_inliers)};
   }
   const Place& last = hypothesis.place;
-  const scene::Holder holder = holder_of(map, last.keyframe);
-  const scene::LocalMap around = build_local_map(map, holder.keyframe, config_.map.max_neighbours);
-  return {0, num_in_sight(
-                 around, view,
-                 holder.holder_from_keyframe * last.keyframe_from_body.value_or(core::Rigid3{}))};
+  const core::KeyframeId keyframe = holder_of(map, last.keyframe).keyframe;
+  const scene::LocalMap around = build_local_map(map, keyframe, config_.map.max_neighbours);
+  const core::Rigid3 reference_from_body =
+      inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, last);
+  return {0, num_in_sight(around, view, reference_from_body)};
 }
 
-// A place whose map ends where the view looks now says nothing about it, for or against.
 void PlaceFinder::record(const features::View& view, const scene::MapVersion& map) {
-  std::vector<Explained> of_view;
   int most_expected = 0;
-  for (const Hypothesis& hypothesis : hypotheses_) {
-    of_view.push_back(explained(hypothesis, view, map));
-    most_expected = std::max(most_expected, of_view.back().num_expected);
+  for (Hypothesis& hypothesis : hypotheses_) {
+    hypothesis.explained.push_back(explained(hypothesis, view, map));
+    if (hypothesis.found)
+      most_expected = std::max(most_expected, hypothesis.explained.back().num_expected);
+    if (hypothesis.explained.size() > kRememberedViews)
+      hypothesis.explained.erase(hypothesis.explained.begin());
   }
-  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
-    auto& history = hypotheses_[i].explained;
-    if (!history.empty() && of_view[i].num_expected < kMinTestable * most_expected) continue;
-    history.push_back(of_view[i]);
-    if (history.size() > kRememberedViews) history.erase(history.begin());
+  for (Hypothesis& hypothesis : hypotheses_) {
+    Explained& now = hypothesis.explained.back();
+    now.is_testable = now.num_expected > 0 && now.num_expected >= kMinTestable * most_expected;
   }
 }
 
-// Of as many views as both were asked about.
 bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const {
-  const std::size_t num_views = std::min(other.explained.size(), hypothesis.explained.size());
-  const Explained by_other = other.sum_of_last(num_views);
-  const Explained by_this = hypothesis.sum_of_last(num_views);
-  const double ratio = config_.track.max_lost_rival_ratio;
-  const auto weak = static_cast<std::size_t>(config_.track.weak_inliers) * num_views;
+  Explained by_other;
+  Explained by_this;
+  int num_views = 0;  // of which both may speak
+  auto a = other.explained.rbegin();
+  for (auto b = hypothesis.explained.rbegin();
+       a != other.explained.rend() && b != hypothesis.explained.rend(); ++a, ++b) {
+    if (!a->is_testable || !b->is_testable) continue;
+    ++num_views;
+    by_other.num_inliers += a->num_inliers;
+    by_other.num_expected += a->num_expected;
+    by_this.num_inliers += b->num_inliers;
+    by_this.num_expected += b->num_expected;
+  }
+  const double ratio = config_.track.lost.max_rival_ratio;
   const bool explains_as_much = by_other.num_inliers > ratio * by_this.num_inliers;
-  const bool is_as_true_to_itself = static_cast<std::size_t>(by_other.num_inliers) >= weak &&
-                                    1.0 * by_other.num_inliers * by_this.num_expected >
-                                        ratio * by_this.num_inliers * by_other.num_expected;
-  return explains_as_much || is_as_true_to_itself;
+  const bool is_weak = by_other.num_inliers < config_.track.weak_inliers * num_views;
+  const bool is_as_true_to_itself = 1.0 * by_other.num_inliers * by_this.num_expected >
+                                    ratio * by_this.num_inliers * by_other.num_expected;
+  return explains_as_much || (!is_weak && is_as_true_to_itself);
 }
 
 bool PlaceFinder::has_fresh_place(int num_views) const {
@@ -222,18 +224,34 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
                                             const scene::MapVersion& map,
                                             const std::vector<Place>& places, int num_views,
                                             const IsWithinReach& is_within_reach) {
-  for (Hypothesis& known : hypotheses_) look_at(known.place, view, map, is_within_reach, known);
-  for (const Place& place : places) think_of(place, view, map, is_within_reach);
+  const Question question{view, map, is_within_reach};
+  std::vector<Place> elsewhere;
+  for (Hypothesis& known : hypotheses_) {
+    Sight sight = look_at(known.place, question);
+    known.found = std::move(sight.found);
+    if (known.found) {
+      const bool is_recognised = known.place.is_recognised;
+      known.place = place_of(*known.found);
+      known.place.is_recognised = is_recognised;
+    }
+    if (sight.elsewhere) elsewhere.push_back(place_of(*sight.elsewhere));
+  }
+  for (const Place& place : places) think_of(place, question);
+  for (const Place& place : elsewhere) think_of(place, question);
+  if (hypotheses_.empty()) return std::nullopt;
   record(view, map);
   merge(map);
   for (Hypothesis& hypothesis : hypotheses_) {
     const bool is_seen = hypothesis.found && hypothesis.place.is_recognised &&
                          hypothesis.found->track.pose.status != core::FrameStatus::kWeak;
+    const auto num_testable =
+        std::count_if(hypothesis.explained.begin(), hypothesis.explained.end(),
+                      [](const Explained& of_view) { return of_view.is_testable; });
     const bool has_rival =
         std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
           return &other != &hypothesis && is_rival(other, hypothesis);
         });
-    if (!is_seen || std::ssize(hypothesis.explained) < num_views || has_rival) continue;
+    if (!is_seen || num_testable < num_views || has_rival) continue;
     FoundPlace found = std::move(*hypothesis.found);
     forget();
     return found;

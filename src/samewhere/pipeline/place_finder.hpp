@@ -22,9 +22,9 @@ using IsWithinReach = std::function<bool(const core::FramePose& pose)>;
 
 // Where is somebody who is lost? Every place of the map where the views since then may have been
 // taken is held against every other: each view is tracked among the landmarks of each, and what
-// they explain is added up. One place is found once it has explained enough views, and no other
-// about as much of the same views, or as much of what it has to show for itself where the map knows
-// little (track.max_lost_rival_ratio). Until then nobody can tell; the places are kept, for whoever
+// they explain of the same views is added up. One place is found once it has explained enough
+// views, and no other about as many inliers, or as many of the landmarks that should be in sight
+// there (track.lost.max_rival_ratio). Until then nobody can tell; the places are kept, for whoever
 // walks on learns in the end which of them goes on as the views do.
 class PlaceFinder {
  public:
@@ -34,7 +34,7 @@ class PlaceFinder {
 
   // The next view. `places`: where it may have been taken, those of earlier views need not be told
   // again. Two poses that hardly differ for what is in sight are one place; what is beyond reach is
-  // no place. Found are `num_views` at least.
+  // no place. What is found was recognised, and `num_views` views speak for it.
   std::optional<FoundPlace> look(const features::View& view, const scene::MapVersion& map,
                                  const std::vector<Place>& places, int num_views,
                                  const IsWithinReach& is_within_reach);
@@ -42,36 +42,43 @@ class PlaceFinder {
   // Whether some place was thought of too late to have explained `num_views` views yet.
   bool has_fresh_place(int num_views) const;
 
-  // Nobody is lost any more.
+  // Nobody is lost any more, or the map is given up.
   void forget() { hypotheses_.clear(); }
 
  private:
-  // What a place makes of a view.
+  // What a place makes of a view. Not testable: the map ends where the view looks.
   struct Explained {
     int num_inliers = 0;
     int num_expected = 0;  // landmarks that should be in sight there
+    bool is_testable = false;
   };
   struct Hypothesis {
     Place place;                       // as it explained a view last
-    std::vector<Explained> explained;  // of the last few views that could speak about it
+    std::vector<Explained> explained;  // of each view since it was thought of, of the last few
     std::optional<FoundPlace> found;   // of this view
-
-    Explained sum_of_last(std::size_t num_views) const;
+  };
+  // Near a place, and the best explanation elsewhere in its local map: another place.
+  struct Sight {
+    std::optional<FoundPlace> found;
+    std::optional<FoundPlace> elsewhere;
   };
 
-  // With or without a guess, whichever explains more: the guess is a view old, and who turns sees
-  // little of what is near it.
-  std::optional<FoundPlace> track_around(
-      core::KeyframeId keyframe, const features::View& view, const scene::MapVersion& map,
-      const std::optional<core::Rigid3>& keyframe_from_body) const;
-  void look_at(const Place& place, const features::View& view, const scene::MapVersion& map,
-               const IsWithinReach& is_within_reach, Hypothesis& hypothesis) const;
-  void think_of(const Place& place, const features::View& view, const scene::MapVersion& map,
-                const IsWithinReach& is_within_reach);
-  void merge(const scene::MapVersion& map);
+  struct Question {
+    const features::View& view;
+    const scene::MapVersion& map;
+    const IsWithinReach& is_within_reach;
+  };
+
+  Sight look_at(const Place& place, const Question& question) const;
+  // Near the guess and anywhere, whichever explains more: the guess is a view old, and who turns
+  // sees little of what is near it.
+  void track_around(core::KeyframeId keyframe, const Place& place, const Question& question,
+                    Sight& sight) const;
+  void think_of(const Place& place, const Question& question);
   Explained explained(const Hypothesis& hypothesis, const features::View& view,
                       const scene::MapVersion& map) const;
   void record(const features::View& view, const scene::MapVersion& map);
+  void merge(const scene::MapVersion& map);
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
 
   const Config& config_;

@@ -5,6 +5,7 @@
 
 #include <samewhere/features/test_world.hpp>
 #include <samewhere/map/mapper.hpp>
+#include <samewhere/map/test_map.hpp>
 #include <samewhere/pipeline/place_finder.hpp>
 
 namespace samewhere::pipeline {
@@ -16,19 +17,24 @@ const core::KeyframeId kThere(1);
 
 bool anywhere(const core::FramePose& /*pose*/) { return true; }
 
-// One place twice in one map, 50 m apart, but for `different` of the points there, which look like
-// nothing here.
-scene::MapVersion map_with_twins(const features::TestWorld& here, double different) {
-  features::TestWorld there = here;
+const core::Rigid3 kFar{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
+
+// So many of the points look like nothing in the world.
+features::TestWorld partly_different(features::TestWorld world, double share) {
   core::Random random(9);
-  for (auto& descriptor : there.descriptors) {
-    if (random.uniform(0.0, 1.0) >= different) continue;
+  for (auto& descriptor : world.descriptors) {
+    if (random.uniform(0.0, 1.0) >= share) continue;
     for (auto& byte : descriptor) byte = static_cast<std::uint8_t>(random.index(256));
   }
+  return world;
+}
+
+// One place twice in one map, but for a share of the points.
+scene::MapVersion map_with_twins(const features::TestWorld& here, double different) {
   scene::MapVersion map;
   map = apply(map, map::start_map(map, features::test_view(here, 0, {}), {}));
-  const core::Rigid3 far{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
-  return apply(map, map::start_map(map, features::test_view(there, 1, {}), far));
+  return apply(map, map::start_map(
+                        map, features::test_view(partly_different(here, different), 1, {}), kFar));
 }
 
 class TestPlaceFinder : public testing::Test {
@@ -88,6 +94,58 @@ TEST_F(TestPlaceFinder, APlaceBeyondReachIsNoRival) {
   for (int i = 0; i < kNumViews; ++i) found = look(map, i, both_, near_here);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
+}
+
+// Without all but a share of the features.
+features::View thinned(const features::View& view, double share) {
+  core::Random random(4);
+  auto features = std::make_shared<features::Features>();
+  features->descriptors = cv::Mat(0, 32, CV_8U);
+  const features::Features& all = *view.features;
+  for (int i = 0; i < all.size(); ++i) {
+    if (random.uniform(0.0, 1.0) >= share) continue;
+    const auto k = static_cast<std::size_t>(i);
+    features->raw_px.push_back(all.raw_px[k]);
+    features->undistorted_px.push_back(all.undistorted_px[k]);
+    features->depth_m.push_back(all.depth_m[k]);
+    features->right_x_px.push_back(all.right_x_px[k]);
+    features->octave.push_back(all.octave[k]);
+    features->angle_rad.push_back(all.angle_rad[k]);
+    features->rgb.push_back(all.rgb[k]);
+    features->descriptors.push_back(all.descriptors.row(i));
+  }
+  features::View thin = view;
+  thin.features = features;
+  return thin;
+}
+
+TEST_F(TestPlaceFinder, APlaceOfWhichTheMapKnowsLittleIsHeldAgainstWhatItKnows) {
+  scene::MapVersion map;
+  map = apply(map, map::start_map(map, thinned(features::test_view(world_, 0, {}), 0.55), {}));
+  map = apply(map,
+              map::start_map(map, features::test_view(partly_different(world_, 0.1), 1, {}), kFar));
+  for (int i = 0; i < 4 * kNumViews; ++i)
+    EXPECT_FALSE(look(map, i, both_)) << "view " << i << ": the look-alike has more inliers";
+}
+
+TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
+  const core::Rigid3 turned{core::exp_so3({0.0, 0.7, 0.0}), {0.0, 0.0, 0.0}};
+  // the look-alike is known further than the place
+  scene::MapVersion map;
+  map = apply(map, map::start_map(map, features::test_view(world_, 0, {}), kFar));
+  map = apply(map,
+              map::add_keyframe(map, map::test_tracked(map, features::test_view(world_, 1, turned),
+                                                       kFar * turned, [](auto) { return false; })));
+  map = apply(map, map::start_map(map, features::test_view(world_, 2, {}), {}));
+  const core::KeyframeId here(2);
+  const std::vector<Place> both = {{core::KeyframeId(0), core::Rigid3{}, true},
+                                   {here, core::Rigid3{}, true}};
+  for (int i = 0; i < 2 * kNumViews; ++i) {
+    const core::Rigid3 turning{core::exp_so3({0.0, 0.07 * i, 0.0}), {0.0, 0.0, 0.0}};
+    EXPECT_FALSE(finder_.look(features::test_view(world_, 10 + i, turning), map,
+                              i == 0 ? both : std::vector<Place>{}, kNumViews, anywhere))
+        << "view " << i;
+  }
 }
 
 TEST_F(TestPlaceFinder, APlaceThatTheJudgeDidNotRecogniseIsARivalAndIsNotFound) {

@@ -156,7 +156,7 @@ bool Tracking::is_within_reach(const core::FramePose& pose) const {
   const core::FramePose* last = last_measured();
   if (last == nullptr || is_without_depth(map_)) return true;
   const double way_m = (world_from(pose).translation - world_from(*last).translation).norm();
-  return way_m <= kAnyhow_m + config_.track.max_speed_m_s * (pose.stamp_s - last->stamp_s);
+  return way_m <= kAnyhow_m + config_.track.lost.max_speed_m_s * (pose.stamp_s - last->stamp_s);
 }
 
 // Who looked away for a moment is near where he was.
@@ -164,7 +164,7 @@ int Tracking::num_views_to_resume(double stamp_s) const {
   constexpr double kMoment_s = 1.0;
   const core::FramePose* last = last_measured();
   const bool is_near = last != nullptr && stamp_s - last->stamp_s <= kMoment_s;
-  return is_near ? 1 : config_.track.lost_views_to_resume;
+  return is_near ? 1 : config_.track.lost.views_to_resume;
 }
 
 void Tracking::follow(map::TrackedView& tracked) {
@@ -243,13 +243,14 @@ bool Tracking::is_start_doubtful() const {
 
 std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
                                                      const features::View& view) {
-  if (!starter_ && num_lost_ < config_.track.lost_frames_to_restart) return std::nullopt;
+  if (!starter_ && num_lost_ < config_.track.lost.frames_to_restart) return std::nullopt;
   if (place_finder_.has_fresh_place(num_views_to_resume(view.stamp_s))) return std::nullopt;
   return start(frame, view);
 }
 
 // What was sent is sent again.
 void Tracking::give_up_poses() {
+  place_finder_.forget();
   for (auto& pose : frames_) pose = {.frame = pose.frame, .stamp_s = pose.stamp_s};
   keyframe_of_.clear();
   num_given_up_ = num_keyframes_;

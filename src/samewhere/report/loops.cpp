@@ -72,6 +72,7 @@ Json entry_of(const core::LedgerRow& row) {
                 {"reason", core::reason_of(row.verdict)},  {"scores", scores_of(row.verdict)},
                 {"match_from_query", pose_of(row.verdict)}};
   if (row.candidate.is_foretold) entry["is_foretold"] = true;
+  if (row.candidate.is_lost) entry["is_lost"] = true;
   return entry;
 }
 

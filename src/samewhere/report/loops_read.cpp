@@ -19,8 +19,12 @@ using Json = nlohmann::ordered_json;  // as in loops.cpp
 class Entry {
  public:
   Entry(const Json& json, std::size_t position) : json_(json), scores_(json.at("scores")) {
-    row_.candidate = {core::CandidateId(position), frame("query"), frame("match"),
-                      scores_.at("similarity").get<double>(), json.value("is_foretold", false)};
+    row_.candidate = {core::CandidateId(position),
+                      frame("query"),
+                      frame("match"),
+                      scores_.at("similarity").get<double>(),
+                      json.value("is_foretold", false),
+                      json.value("is_lost", false)};
   }
 
   core::LedgerRow row() && {

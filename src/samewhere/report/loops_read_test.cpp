@@ -62,6 +62,7 @@ TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
       core::SequenceEvidence{.query_view = 9, .match_view = 2, .num_views = 5, .num_inliers = 200};
   core::Candidate about = candidate(0, 9, 2, 0.8);
   about.is_foretold = true;
+  about.is_lost = true;
   const core::Ledger found = read(loops_json(
       {{about, core::Ambiguous{.candidate = about.id, .evidence = waiting, .reason = "so far"}}}));
   EXPECT_EQ(core::reason_of(found.at(0).verdict), "so far");
@@ -73,6 +74,7 @@ TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
   EXPECT_EQ(sequence->num_inliers, 200);
   EXPECT_FALSE(sequence->is_over);
   EXPECT_TRUE(found.at(0).candidate.is_foretold);
+  EXPECT_TRUE(found.at(0).candidate.is_lost);
 }
 
 TEST_F(LoopsRead, ARivalIsReadBack) {

@@ -86,6 +86,36 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
          .max = 1.0});
 }
 
+// Who has lost his place, and where he may be found.
+struct LostConfig {
+  double max_speed_m_s = 3.0;
+  double max_rival_ratio = 0.75;
+  int views_to_resume = 5;
+  int frames_to_restart = 30;
+};
+
+inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
+  visit("max_speed_m_s", config.max_speed_m_s,
+        {.help = "who is lost is found nowhere beyond what this speed reaches since the last pose; "
+                 "without depth there are no metres, and no limit",
+         .min = 0.01,
+         .max = 1000.0});
+  visit("max_rival_ratio", config.max_rival_ratio,
+        {.help = "nobody is found while another place of the map has more than this share of the "
+                 "best one's inliers, or of its inliers for each landmark in sight",
+         .min = 0.0,
+         .max = 1.0});
+  visit("views_to_resume", config.views_to_resume,
+        {.help = "so many views must speak for a place; after less than a second one is enough",
+         .min = 1,
+         .max = 10});
+  visit("frames_to_restart", config.frames_to_restart,
+        {.help = "with depth, lost for so many frames in a map of fewer than "
+                 "start.provisional_keyframes: it is given up for a new start",
+         .min = 1,
+         .max = 1000000});
+}
+
 struct Config {
   double near_radius_px = 12.0;
   double far_radius_px = 48.0;
@@ -95,10 +125,7 @@ struct Config {
   int min_inliers = 15;
   int weak_inliers = 40;
   int sure_inliers = 100;
-  double max_speed_m_s = 3.0;
-  double max_lost_rival_ratio = 0.75;
-  int lost_views_to_resume = 5;
-  int lost_frames_to_restart = 30;
+  LostConfig lost;
   StartConfig start;
   DriftConfig drift;
 };
@@ -124,26 +151,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
          .min = 6,
          .max = 10000});
-  visit("max_speed_m_s", config.max_speed_m_s,
-        {.help = "who is lost is found nowhere beyond what this speed reaches since the last pose; "
-                 "without depth there are no metres, and no limit",
-         .min = 0.01,
-         .max = 1000.0});
-  visit("max_lost_rival_ratio", config.max_lost_rival_ratio,
-        {.help = "who is lost is found nowhere while another place of the map explains more than "
-                 "this share of the inliers; 1: the best place is taken",
-         .min = 0.0,
-         .max = 1.0});
-  visit(
-      "lost_views_to_resume", config.lost_views_to_resume,
-      {.help = "who is lost is found once so many views in a row are explained by one place alone",
-       .min = 1,
-       .max = 1000});
-  visit("lost_frames_to_restart", config.lost_frames_to_restart,
-        {.help = "with depth, lost for so many frames in a map of fewer than "
-                 "start.provisional_keyframes: it is given up for a new start",
-         .min = 1,
-         .max = 1000000});
+  visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});
   visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
   visit("drift", config.drift,
         {.help = "Error model of the odometry, from which its information is made"});
