@@ -86,7 +86,6 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
   }
   num_lost_ = tracked ? 0 : num_lost_ + 1;
   if (tracked) {
-    place_finder_.forget();
     if (starter_) starter_->forget();
     follow(*tracked);
     remember(*tracked);
