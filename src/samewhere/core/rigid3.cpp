@@ -25,10 +25,6 @@ Rigid3 operator*(const Rigid3& a_from_b, const Rigid3& b_from_c) {
           a_from_b.rotation * b_from_c.translation + a_from_b.translation};
 }
 
-Eigen::Vector3d operator*(const Rigid3& a_from_b, const Eigen::Vector3d& x_in_b) {
-  return a_from_b.rotation * x_in_b + a_from_b.translation;
-}
-
 Rigid3 inverse(const Rigid3& a_from_b) {
   const Eigen::Quaterniond rotation = a_from_b.rotation.conjugate();
   return {rotation, -(rotation * a_from_b.translation)};

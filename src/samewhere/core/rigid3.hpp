@@ -27,8 +27,12 @@ struct Sim3 {
 };
 
 Rigid3 operator*(const Rigid3& a_from_b, const Rigid3& b_from_c);
-Eigen::Vector3d operator*(const Rigid3& a_from_b, const Eigen::Vector3d& x_in_b);
 Rigid3 inverse(const Rigid3& a_from_b);
+
+// Here, as it is part of the innermost loops.
+inline Eigen::Vector3d operator*(const Rigid3& a_from_b, const Eigen::Vector3d& x_in_b) {
+  return a_from_b.rotation * x_in_b + a_from_b.translation;
+}
 
 Sim3 operator*(const Sim3& a_from_b, const Sim3& b_from_c);
 Eigen::Vector3d operator*(const Sim3& a_from_b, const Eigen::Vector3d& x_in_b);

@@ -8,6 +8,7 @@
 #include <opencv2/features2d.hpp>
 
 #include <samewhere/features/corners.hpp>
+#include <samewhere/features/pyramid.hpp>
 
 namespace samewhere::features {
 namespace {
@@ -86,42 +87,49 @@ struct Grid {
   }
 };
 
-// A corner on its way to being chosen.
-struct Ranked {
-  Corner corner;
-  std::pair<int, int> cell;  // row and column of the part of the picture it lies in
-  int rank_in_cell = 0;
-  int rank_in_level = 0;  // of its cell
+bool is_stronger(const Corner& a, const Corner& b) {
+  if (a.strength != b.strength) return a.strength > b.strength;
+  return std::tuple(a.level, a.level_px.y(), a.level_px.x()) <
+         std::tuple(b.level, b.level_px.y(), b.level_px.x());
+}
 
-  int turn() const {
-    return rank_in_cell < kSurePerCell ? rank_in_cell : kSurePerCell + rank_in_level;
+// Which turn a corner has among those of its part of the picture, as they come, strongest first:
+// some go before all others, the rest by their turn among those of their level.
+class Turns {
+ public:
+  explicit Turns(const Config& config) {
+    for (const double scale : level_scales(config)) {
+      cell_px_of_level_.push_back(static_cast<float>(config.cell_px / scale));
+    }
   }
+
+  int next_of(const Corner& corner) {
+    const auto level = static_cast<std::size_t>(corner.level);
+    Cell& cell = cell_of(corner.level_px / cell_px_of_level_[level]);
+    const int of_level = cell.num_of_level[level]++;
+    const int of_cell = cell.num++;
+    return of_cell < kSurePerCell ? of_cell : kSurePerCell + of_level;
+  }
+
+ private:
+  struct Cell {
+    int num = 0;
+    std::vector<int> num_of_level;
+  };
+
+  Cell& cell_of(const Eigen::Vector2f& pixel_in_cells) {
+    const auto row = static_cast<std::size_t>(pixel_in_cells.y());
+    const auto column = static_cast<std::size_t>(pixel_in_cells.x());
+    if (row >= rows_.size()) rows_.resize(row + 1);
+    if (column >= rows_[row].size()) {
+      rows_[row].resize(column + 1, {0, std::vector<int>(cell_px_of_level_.size(), 0)});
+    }
+    return rows_[row][column];
+  }
+
+  std::vector<float> cell_px_of_level_;
+  std::vector<std::vector<Cell>> rows_;
 };
-
-std::pair<int, int> cell_of(const Corner& corner, const Config& config) {
-  const auto cell_px =
-      static_cast<float>(config.cell_px * std::pow(config.scale_factor, -corner.level));
-  return {static_cast<int>(corner.level_px.y() / cell_px),
-          static_cast<int>(corner.level_px.x() / cell_px)};
-}
-
-bool is_stronger(const Ranked& a, const Ranked& b) {
-  if (a.corner.strength != b.corner.strength) return a.corner.strength > b.corner.strength;
-  return std::tuple(a.corner.level, a.corner.level_px.y(), a.corner.level_px.x()) <
-         std::tuple(b.corner.level, b.corner.level_px.y(), b.corner.level_px.x());
-}
-
-// Numbers the corners of each group by strength.
-template <class GroupOf>
-void rank(std::vector<Ranked>& corners, const GroupOf& group_of, int Ranked::*rank) {
-  std::sort(corners.begin(), corners.end(), [&](const Ranked& a, const Ranked& b) {
-    return group_of(a) != group_of(b) ? group_of(a) < group_of(b) : is_stronger(a, b);
-  });
-  for (std::size_t i = 0, first = 0; i < corners.size(); ++i) {
-    if (group_of(corners[i]) != group_of(corners[first])) first = i;
-    corners[i].*rank = static_cast<int>(i - first);
-  }
-}
 
 }  // namespace
 
@@ -149,23 +157,23 @@ std::vector<Corner> find_corners(const cv::Mat& image, int level, const Config& 
   return corners;
 }
 
-std::vector<Corner> spread_evenly(const std::vector<Corner>& corners, const Config& config) {
-  std::vector<Ranked> ranked;
-  ranked.reserve(corners.size());
-  for (const Corner& corner : corners) ranked.push_back({corner, cell_of(corner, config)});
-  rank(
-      ranked, [](const Ranked& one) { return one.cell; }, &Ranked::rank_in_cell);
-  rank(
-      ranked, [](const Ranked& one) { return std::tuple(one.cell, one.corner.level); },
-      &Ranked::rank_in_level);
-  const auto num_kept = std::min(ranked.size(), static_cast<std::size_t>(config.num_features));
-  const auto last_kept = ranked.begin() + static_cast<std::ptrdiff_t>(num_kept);
-  std::partial_sort(ranked.begin(), last_kept, ranked.end(), [](const Ranked& a, const Ranked& b) {
-    return a.turn() != b.turn() ? a.turn() < b.turn() : is_stronger(a, b);
-  });
+std::vector<Corner> spread_evenly(std::vector<Corner> corners, const Config& config) {
+  std::sort(corners.begin(), corners.end(),
+            [](const Corner& a, const Corner& b) { return is_stronger(a, b); });
+  Turns turns(config);
+  std::vector<std::vector<Corner>> of_turn;
+  for (const Corner& corner : corners) {
+    const auto turn = static_cast<std::size_t>(turns.next_of(corner));
+    if (turn >= of_turn.size()) of_turn.resize(turn + 1);
+    of_turn[turn].push_back(corner);
+  }
   std::vector<Corner> spread;
-  spread.reserve(num_kept);
-  for (auto kept = ranked.begin(); kept != last_kept; ++kept) spread.push_back(kept->corner);
+  for (const auto& same_turn : of_turn) {
+    for (const Corner& corner : same_turn) {
+      if (spread.size() == static_cast<std::size_t>(config.num_features)) return spread;
+      spread.push_back(corner);
+    }
+  }
   return spread;
 }
 

@@ -29,7 +29,7 @@ std::vector<Corner> find_corners(const cv::Mat& image, int level, const Config& 
 // turn. A cell covers the same part of the picture on each level: shares by the area of the levels
 // match still pictures a little better, but the coarse levels carry the tracking of a camera that
 // shakes. In the order of turn, strength, level, position.
-std::vector<Corner> spread_evenly(const std::vector<Corner>& corners, const Config& config);
+std::vector<Corner> spread_evenly(std::vector<Corner> corners, const Config& config);
 
 // The corner moved to the top of a parabola through the strengths around it, at most half a pixel
 // along each axis. `image` is the level it was found on.

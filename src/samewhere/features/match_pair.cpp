@@ -1,13 +1,15 @@
 #include <limits>
 
-#include <opencv2/core/hal/hal.hpp>
+#include <opencv2/core/hal/intrin.hpp>
 
+#include <samewhere/features/describe.hpp>
 #include <samewhere/features/match_pair.hpp>
 
 namespace samewhere::features {
 namespace {
 
-constexpr int kBytes = 32;
+constexpr int kHalfBytes = kDescriptorBytes / 2;
+static_assert(kHalfBytes == cv::v_uint8x16::nlanes);
 constexpr int kFar = std::numeric_limits<int>::max();
 
 struct Nearest {
@@ -29,7 +31,10 @@ struct Nearest {
 }  // namespace
 
 int distance_bits(const unsigned char* a, const unsigned char* b) {
-  return cv::hal::normHamming(a, b, kBytes);
+  const auto bits_of_half = [&](int first) {
+    return cv::v_popcount(cv::v_load(a + first) ^ cv::v_load(b + first));
+  };
+  return static_cast<int>(cv::v_reduce_sum(bits_of_half(0) + bits_of_half(kHalfBytes)));
 }
 
 std::vector<Match> match_pair(const cv::Mat& first, const cv::Mat& second, const Config& config) {

@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include <samewhere/features/match_projected.hpp>
+#include <samewhere/features/pyramid.hpp>
 
 namespace samewhere::features {
 namespace {
@@ -11,31 +15,42 @@ namespace {
 constexpr int kCell_px = 24;
 constexpr int kMaxOctaveStep = 2;
 
-std::optional<Match> best_near(const ProjectedPoint& point, const unsigned char* descriptor,
-                               const Features& features, const std::vector<int>& nearby,
-                               const Config& config) {
-  Match best{point.row, -1, 257};
-  int second_bits = 257;
-  int second_octave = -1;
-  for (const int i : nearby) {
-    const int octave = features.octave[static_cast<std::size_t>(i)];
-    if (std::abs(octave - point.octave) > kMaxOctaveStep) continue;
-    const int bits = distance_bits(descriptor, features.descriptors.ptr(i));
-    if (bits < best.distance_bits) {
-      second_bits = best.distance_bits;
-      second_octave = best.second < 0 ? -1 : features.octave[static_cast<std::size_t>(best.second)];
-      best.second = i;
-      best.distance_bits = bits;
-    } else if (bits < second_bits) {
-      second_bits = bits;
-      second_octave = octave;
-    }
+// A feature by how much it looks like a point; ties go to the feature with the lower index, so that
+// the order in which they are looked at does not matter.
+struct Alike {
+  int distance_bits = 257;
+  int feature = -1;
+
+  bool operator<(const Alike& other) const {
+    return std::tie(distance_bits, feature) < std::tie(other.distance_bits, other.feature);
   }
-  if (best.second < 0 || best.distance_bits > config.max_distance_bits) return std::nullopt;
+};
+
+std::optional<Match> best_near(const ProjectedPoint& point, const unsigned char* descriptor,
+                               const Features& features, const PixelGrid& grid, double radius_px,
+                               const Config& config) {
+  const auto octave_of = [&](int feature) {
+    return features.octave[static_cast<std::size_t>(feature)];
+  };
+  Alike best;
+  Alike second;
+  grid.visit_within(point.pixel, radius_px, [&](int i) {
+    if (std::abs(octave_of(i) - point.octave) > kMaxOctaveStep) return;
+    const Alike one{distance_bits(descriptor, features.descriptors.ptr(i)), i};
+    if (one < best) {
+      second = std::exchange(best, one);
+    } else if (one < second) {
+      second = one;
+    }
+  });
+  if (best.feature < 0 || best.distance_bits > config.max_distance_bits) return std::nullopt;
   // the same corner is often found on two levels: a second best on another level is no rival
-  const bool has_rival = second_octave == features.octave[static_cast<std::size_t>(best.second)];
-  if (has_rival && best.distance_bits > config.max_ratio * second_bits) return std::nullopt;
-  return best;
+  const bool has_rival =
+      second.feature >= 0 && octave_of(second.feature) == octave_of(best.feature);
+  if (has_rival && best.distance_bits > config.max_ratio * second.distance_bits) {
+    return std::nullopt;
+  }
+  return Match{point.row, best.feature, best.distance_bits};
 }
 
 }  // namespace
@@ -46,39 +61,26 @@ int octave_at(int octave, double described_range_m, double range_m, const Config
 }
 
 PixelGrid::PixelGrid(const Features& features, cv::Size image_size_px)
-    : features_(features),
-      num_columns_(image_size_px.width / kCell_px + 1),
+    : num_columns_(image_size_px.width / kCell_px + 1),
       num_rows_(image_size_px.height / kCell_px + 1),
-      cells_(static_cast<std::size_t>(num_columns_ * num_rows_)) {
+      first_of_cell_(static_cast<std::size_t>(num_columns_ * num_rows_) + 1, 0),
+      placed_(features.undistorted_px.size()) {
+  const auto cell_at = [&](const Eigen::Vector2f& pixel) {
+    return static_cast<std::size_t>(cell_of(pixel.y(), num_rows_) * num_columns_ +
+                                    cell_of(pixel.x(), num_columns_));
+  };
+  for (const auto& pixel : features.undistorted_px) ++first_of_cell_[cell_at(pixel) + 1];
+  std::partial_sum(first_of_cell_.begin(), first_of_cell_.end(), first_of_cell_.begin());
+  std::vector<std::size_t> next(first_of_cell_.begin(), first_of_cell_.end() - 1);
   for (int i = 0; i < features.size(); ++i) {
     const Eigen::Vector2f& pixel = features.undistorted_px[static_cast<std::size_t>(i)];
-    const int cell =
-        cell_of(pixel.y(), num_rows_) * num_columns_ + cell_of(pixel.x(), num_columns_);
-    cells_[static_cast<std::size_t>(cell)].push_back(i);
+    placed_[next[cell_at(pixel)]++] = {pixel, i};
   }
 }
 
-int PixelGrid::cell_of(double coordinate_px, int num_cells) const {
-  // undistorted pixels may lie outside the picture: they go to the cells at its edge
-  return static_cast<int>(std::clamp(std::floor(coordinate_px / kCell_px), 0.0, num_cells - 1.0));
-}
-
-std::vector<int> PixelGrid::within(const Eigen::Vector2d& pixel, double radius_px) const {
-  std::vector<int> found;
-  const int last_row = cell_of(pixel.y() + radius_px, num_rows_);
-  const int last_column = cell_of(pixel.x() + radius_px, num_columns_);
-  for (int row = cell_of(pixel.y() - radius_px, num_rows_); row <= last_row; ++row) {
-    for (int column = cell_of(pixel.x() - radius_px, num_columns_); column <= last_column;
-         ++column) {
-      for (const int i : cells_[static_cast<std::size_t>(row * num_columns_ + column)]) {
-        const Eigen::Vector2d offset =
-            features_.undistorted_px[static_cast<std::size_t>(i)].cast<double>() - pixel;
-        if (offset.squaredNorm() <= radius_px * radius_px) found.push_back(i);
-      }
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
+// Undistorted pixels may lie outside the picture: they go to the cells at its edge.
+int PixelGrid::cell_of(double coordinate_px, int num_cells) {
+  return static_cast<int>(std::clamp(coordinate_px / kCell_px, 0.0, num_cells - 1.0));
 }
 
 std::vector<Match> match_projected(const std::vector<ProjectedPoint>& points,
@@ -86,11 +88,12 @@ std::vector<Match> match_projected(const std::vector<ProjectedPoint>& points,
                                    double radius_px, const Config& config) {
   const Features& features = *view.features;
   const PixelGrid grid(features, view.image_size_px);
+  const std::vector<double> scales = level_scales(config);
   std::vector<std::optional<Match>> of_feature(static_cast<std::size_t>(features.size()));
   for (const auto& point : points) {
-    const double radius = radius_px * std::pow(config.scale_factor, point.octave);
-    const auto match = best_near(point, point_descriptors.ptr(point.row), features,
-                                 grid.within(point.pixel, radius), config);
+    const double radius = radius_px * scales[static_cast<std::size_t>(point.octave)];
+    const auto match =
+        best_near(point, point_descriptors.ptr(point.row), features, grid, radius, config);
     if (!match) continue;
     auto& holder = of_feature[static_cast<std::size_t>(match->second)];
     if (!holder || match->distance_bits < holder->distance_bits) holder = match;

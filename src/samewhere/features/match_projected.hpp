@@ -14,16 +14,36 @@ class PixelGrid {
  public:
   PixelGrid(const Features& features, cv::Size image_size_px);
 
-  // Indices of the features whose undistorted pixel lies within `radius_px` of `pixel`, ascending.
-  std::vector<int> within(const Eigen::Vector2d& pixel, double radius_px) const;
+  // Calls visit(index) for each feature whose undistorted pixel lies within `radius_px` of `pixel`,
+  // cell by cell.
+  template <class Visit>
+  void visit_within(const Eigen::Vector2d& pixel, double radius_px, const Visit& visit) const {
+    const int first_column = cell_of(pixel.x() - radius_px, num_columns_);
+    const int last_column = cell_of(pixel.x() + radius_px, num_columns_);
+    const int last_row = cell_of(pixel.y() + radius_px, num_rows_);
+    for (int row = cell_of(pixel.y() - radius_px, num_rows_); row <= last_row; ++row) {
+      // the cells of a row lie one after the other
+      const auto first = static_cast<std::size_t>(row * num_columns_ + first_column);
+      const auto last = static_cast<std::size_t>(row * num_columns_ + last_column);
+      for (std::size_t i = first_of_cell_[first]; i < first_of_cell_[last + 1]; ++i) {
+        const Eigen::Vector2d offset = placed_[i].pixel.template cast<double>() - pixel;
+        if (offset.squaredNorm() <= radius_px * radius_px) visit(placed_[i].index);
+      }
+    }
+  }
 
  private:
-  int cell_of(double coordinate_px, int num_cells) const;
+  struct Placed {
+    Eigen::Vector2f pixel;
+    int index = 0;
+  };
 
-  const Features& features_;
+  static int cell_of(double coordinate_px, int num_cells);
+
   int num_columns_;
   int num_rows_;
-  std::vector<std::vector<int>> cells_;
+  std::vector<std::size_t> first_of_cell_;  // into placed_, and one more: its size
+  std::vector<Placed> placed_;              // cell by cell, row by row
 };
 
 // A point of the map and where it should appear.

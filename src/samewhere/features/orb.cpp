@@ -46,7 +46,7 @@ Features features_of(const std::vector<cv::Mat>& levels, const Config& config) {
     corners.insert(corners.end(), found.begin(), found.end());
     blurred.push_back(blurred_for_descriptors(levels[i]));
   }
-  corners = spread_evenly(corners, config);
+  corners = spread_evenly(std::move(corners), config);
   Features features;
   features.descriptors = cv::Mat(static_cast<int>(corners.size()), kDescriptorBytes, CV_8U);
   for (const Corner& whole : corners) {

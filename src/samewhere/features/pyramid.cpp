@@ -30,6 +30,12 @@ std::vector<cv::Mat> pyramid(const cv::Mat& grey, const Config& config) {
   return levels;
 }
 
+std::vector<double> level_scales(const Config& config) {
+  std::vector<double> scales;
+  for (int i = 0; i < config.num_levels; ++i) scales.push_back(std::pow(config.scale_factor, i));
+  return scales;
+}
+
 Eigen::Vector2f full_from_level(const Eigen::Vector2f& level_px, const cv::Mat& level,
                                 const cv::Mat& full) {
   return (level_px.array() + 0.5F) * size_of(full) / size_of(level) - 0.5F;

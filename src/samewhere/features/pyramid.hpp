@@ -14,6 +14,10 @@ namespace samewhere::features {
 // picture itself is smaller. `grey` is 8-bit; level 0 is the picture itself, not a copy.
 std::vector<cv::Mat> pyramid(const cv::Mat& grey, const Config& config);
 
+// How much smaller than the picture each of config.num_levels is: 1, then larger and larger. Also
+// how much less sure a place on that level is, in pixels of the picture.
+std::vector<double> level_scales(const Config& config);
+
 // Where a pixel of a level lies in the full picture. A level is resized between the outer edges of
 // pixels, and a pixel's coordinates are those of its centre: half a pixel of difference that grows
 // with the level.

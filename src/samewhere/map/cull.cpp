@@ -53,20 +53,24 @@ int octave_of(const MapVersion& map, const scene::Observation& o) {
   return map.at(o.keyframe).view.features->octave[static_cast<std::size_t>(o.slot)];
 }
 
-// Share of the keyframe's landmarks that enough others see as finely.
+// Whether enough keyframes besides this one see its landmark as finely.
+bool is_redundant(const MapVersion& map, const Keyframe& keyframe, std::size_t slot) {
+  const int octave = keyframe.view.features->octave[slot];
+  int num_others = 0;
+  for (const auto& o : map.at(keyframe.slots[slot]).observations) {
+    if (o.keyframe == keyframe.id || octave_of(map, o) > octave + 1) continue;
+    if (++num_others == kEnoughObservers) return true;
+  }
+  return false;
+}
+
 double redundant_ratio(const MapVersion& map, const Keyframe& keyframe) {
   int num_landmarks = 0;
   int num_redundant = 0;
   for (std::size_t slot = 0; slot < keyframe.slots.size(); ++slot) {
     if (!keyframe.slots[slot].is_valid()) continue;
     ++num_landmarks;
-    const int octave = keyframe.view.features->octave[slot];
-    const auto& observations = map.at(keyframe.slots[slot]).observations;
-    const auto num_others =
-        std::count_if(observations.begin(), observations.end(), [&](const scene::Observation& o) {
-          return o.keyframe != keyframe.id && octave_of(map, o) <= octave + 1;
-        });
-    num_redundant += num_others >= kEnoughObservers ? 1 : 0;
+    num_redundant += is_redundant(map, keyframe, slot) ? 1 : 0;
   }
   return num_landmarks > 0 ? static_cast<double>(num_redundant) / num_landmarks : 0.0;
 }

@@ -13,6 +13,12 @@ namespace {
 constexpr int kMinInliers = 6;
 constexpr double kConverged = 1e-8;
 
+Reprojection reproject_to(const MotionProblem& problem, const MotionObservation& seen,
+                          const Eigen::Vector3d& point_in_camera) {
+  return reproject(problem.intrinsics, problem.baseline_m, point_in_camera,
+                   {seen.undistorted_px, seen.right_x_px, seen.sigma_px});
+}
+
 struct NormalEquations {
   core::Matrix6d hessian = core::Matrix6d::Zero();
   core::Vector6d gradient = core::Vector6d::Zero();
@@ -51,14 +57,13 @@ void sort_inliers(const MotionProblem& problem, MotionResult& result) {
   result.num_inliers = 0;
   double sum_squared_px = 0.0;
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
-    const MotionResidual r =
-        motion_residual(problem, problem.observations[i], result.camera_from_world);
-    const bool is_inlier = r.size > 0 && r.value.squaredNorm() < kChiSquare95[r.size];
-    result.is_inlier[i] = is_inlier;
-    if (!is_inlier) continue;
+    const MotionObservation& seen = problem.observations[i];
+    const Reprojection r =
+        reproject_to(problem, seen, result.camera_from_world * seen.point_in_world);
+    result.is_inlier[i] = is_inlier(r);
+    if (!result.is_inlier[i]) continue;
     ++result.num_inliers;
-    const double sigma_px = problem.observations[i].sigma_px;
-    sum_squared_px += sigma_px * sigma_px * r.value.head<2>().squaredNorm();
+    sum_squared_px += seen.sigma_px * seen.sigma_px * r.value.head<2>().squaredNorm();
   }
   result.reprojection_rmse_px =
       result.num_inliers > 0 ? std::sqrt(sum_squared_px / result.num_inliers) : 0.0;
@@ -70,11 +75,12 @@ MotionResidual motion_residual(const MotionProblem& problem, const MotionObserva
                                const core::Rigid3& camera_from_world) {
   const Eigen::Vector3d rotated = camera_from_world.rotation * observation.point_in_world;
   const Reprojection reprojection =
-      reproject(problem.intrinsics, problem.baseline_m, rotated + camera_from_world.translation,
-                {observation.undistorted_px, observation.right_x_px, observation.sigma_px});
+      reproject_to(problem, observation, rotated + camera_from_world.translation);
   MotionResidual r{reprojection.size, reprojection.value};
   r.jacobian.leftCols<3>() = reprojection.by_point;
-  r.jacobian.rightCols<3>() = -reprojection.by_point * core::skew(rotated);
+  for (int row = 0; row < reprojection.size; ++row) {
+    r.jacobian.row(row).tail<3>() = rotated.cross(reprojection.by_point.row(row).transpose());
+  }
   return r;
 }
 

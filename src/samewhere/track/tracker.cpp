@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cmath>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/features/pyramid.hpp>
 #include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/pnp.hpp>
@@ -67,13 +67,14 @@ optimize::MotionProblem Tracker::motion_problem(const View& view, const LocalMap
   optimize::MotionProblem problem{geometry::pinhole(view.rig->cameras[0]),
                                   features::baseline_m(*view.rig, settings_.features),
                                   {}};
+  const std::vector<double> scales = features::level_scales(settings_.features);
   for (const auto& match : matches) {
     const auto feature = static_cast<std::size_t>(match.second);
     optimize::MotionObservation seen;
     seen.point_in_world = map.points_in_reference[static_cast<std::size_t>(match.first)];
     seen.undistorted_px = view.features->undistorted_px[feature].cast<double>();
     seen.right_x_px = view.features->right_x_px[feature];
-    seen.sigma_px = std::pow(settings_.features.scale_factor, view.features->octave[feature]);
+    seen.sigma_px = scales[static_cast<std::size_t>(view.features->octave[feature])];
     problem.observations.push_back(seen);
   }
   return problem;
