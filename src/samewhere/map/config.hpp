@@ -10,7 +10,7 @@ struct Config {
   int min_tracked = 150;
   double max_move_ratio = 0.15;
   double max_turn_rad = 0.15;
-  double min_tracked_ratio_without_depth = 0.8;
+  double min_tracked_ratio_without_depth = 0.5;
   double max_move_ratio_without_depth = 0.1;
   int max_neighbours = 6;
   int min_shared = 15;
