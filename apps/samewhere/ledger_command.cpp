@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/pipeline/by_hand.hpp>
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
 #include <samewhere/report/funnel.hpp>
@@ -137,6 +138,18 @@ void replay(const LedgerCommand& command) {
   if (!changed.empty()) fmt::print("\nJudged otherwise:\n{}", lines_of(changed));
 }
 
+void change(const LedgerCommand& command, pipeline::Word word) {
+  const auto changed =
+      pipeline::change_run(command.folder, command.candidate, word, command.assignments);
+  fmt::print("{}", lines_of(changed.rows));
+  print_figures(
+      {{"loops", fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
+       {"farthest that a keyframe moved", fmt::format("{:.3f} m", changed.farthest_m)}});
+  fmt::print(
+      "Written anew: map.sw, loops.json, trajectory.tum, frames.csv, map.ply. report.html still "
+      "shows the run as it was.\n");
+}
+
 void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
   CLI::App* sub = ledger.add_subcommand("list", "The candidates, a line each");
   sub->add_option("--verdict", command->verdict, "only these")
@@ -160,22 +173,36 @@ void add_replay(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command)
   sub->callback([command] { replay(*command); });
 }
 
+void add_change(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command,
+                pipeline::Word word, const char* name, const char* help) {
+  CLI::App* sub = ledger.add_subcommand(name, help);
+  sub->add_option("N", command->candidate, "its number, as `list` prints it")->required();
+  sub->add_option("--set", command->assignments, "SECTION.NAME=VALUE, on top of the run's config");
+  sub->callback([command, word] { change(*command, word); });
+}
+
 }  // namespace
 
 void add_ledger_command(CLI::App& app) {
   auto command = std::make_shared<LedgerCommand>();
-  CLI::App* sub = app.add_subcommand("ledger", "Why each candidate of a run was refused or not");
+  CLI::App* sub = app.add_subcommand(
+      "ledger", "Why each candidate of a run was refused or not; another word on it");
   sub->add_option("RUN", command->folder, "folder that `samewhere run` or `samewhere loops` wrote")
       ->required();
   sub->require_subcommand(1);
   add_list(*sub, command);
   add_show(*sub, command);
   add_replay(*sub, command);
+  add_change(*sub, command, pipeline::Word::kReject, "reject",
+             "Take an accepted loop back with all that it caused: the map is corrected");
+  add_change(*sub, command, pipeline::Word::kForce, "force",
+             "Close a loop that the judge refused, if odometry and the other loops bear it");
   sub->footer(
       "Examples:\n"
       "  samewhere ledger runs/demo list --stage odometry\n"
       "  samewhere ledger runs/demo show 12\n"
-      "  samewhere ledger runs/demo replay --set verify.min_inliers=80");
+      "  samewhere ledger runs/demo replay --set verify.min_inliers=80\n"
+      "  samewhere ledger runs/demo reject 12");
 }
 
 }  // namespace samewhere::app

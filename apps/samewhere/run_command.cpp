@@ -166,6 +166,10 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   sub->add_flag("--realtime", command->is_realtime,
                 "for a camera: always the newest frame; says how many were dropped");
   add_config_options(*sub, command->config);
+  sub->add_flag_callback(
+      "--measure-all",
+      [command] { command->config.assignments.push_back("verify.measure_all=true"); },
+      "measure candidates, too, that are refused already, so that `ledger RUN replay` knows all");
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;

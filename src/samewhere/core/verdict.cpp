@@ -60,10 +60,10 @@ std::string reason_of(const Verdict& verdict) {
   if (const auto* rejection = std::get_if<Rejection>(&verdict)) return rejection->reason;
   if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return ambiguous->reason;
   const Evidence& evidence = evidence_of(verdict);
-  if (!evidence.geometry) return fmt::format("similarity {:.3f}", evidence.similarity);
-  std::string reason =
-      fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
-                  evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
+  std::string reason = std::get<LoopClosure>(verdict).is_by_hand ? "accepted by hand: " : "";
+  if (!evidence.geometry) return reason + fmt::format("similarity {:.3f}", evidence.similarity);
+  reason += fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
+                        evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
   if (evidence.sequence)
     reason += fmt::format("; {} views in a row go on to match", evidence.sequence->num_views);
   return reason;

@@ -113,6 +113,7 @@ struct LoopClosure {
   bool scale_is_free = false;  // monocular: the scale of match_from_query was estimated
   Matrix6d information = Matrix6d::Identity();  // of match_from_query, order [m; rad]
   std::vector<FeaturePair> pairs;
+  bool is_by_hand = false;  // a person said so, whatever the judge
 };
 
 // The two views only look alike, or nothing proves that they do not.

@@ -129,7 +129,8 @@ core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const f
                                        const MapKnowledge& map,
                                        const verify::Config& config) const {
   core::Evidence evidence{.similarity = candidate.similarity};
-  if (auto refused = verify::refuse_early(candidate, evidence, history_, config)) return *refused;
+  auto refused = verify::refuse_early(candidate, evidence, history_, config);
+  if (refused && !config.measure_all) return *refused;
   evidence.geometry = measure_geometry(candidate, view, map.view_of);
   if (needs_sequence(*evidence.geometry, config))
     evidence.sequence = {.query_view = numbered_.number_of(candidate.query),

@@ -23,20 +23,21 @@ core::Candidate candidate(std::uint64_t query, std::uint64_t match, double simil
   return {{}, core::FrameId(query), core::FrameId(match), similarity};
 }
 
-std::vector<std::string> stages(LoopDetector& detector, std::uint64_t query) {
+std::vector<core::LedgerRow> judged(LoopDetector& detector, std::uint64_t query) {
   const auto without_odometry = [](const core::Candidate& /*candidate*/,
                                    const core::Sim3& /*match_from_query*/) {
     return std::optional<core::OdometryEvidence>();
   };
   const std::vector<core::Candidate> candidates = {
       candidate(query, 0, 0.9), candidate(query, 1, 0.8), candidate(query, 2, 0.6)};
-  std::vector<std::string> stages;
   const core::Descriptor unused{.frame = core::FrameId(query), .unit = {}};
-  for (const auto& row :
-       detector.judge(unused, query < 3 ? std::vector<core::Candidate>() : candidates,
-                      blank_view(query), {without_odometry})) {
-    stages.emplace_back(core::stage_of(row.verdict));
-  }
+  return detector.judge(unused, query < 3 ? std::vector<core::Candidate>() : candidates,
+                        blank_view(query), {without_odometry});
+}
+
+std::vector<std::string> stages(LoopDetector& detector, std::uint64_t query) {
+  std::vector<std::string> stages;
+  for (const auto& row : judged(detector, query)) stages.emplace_back(core::stage_of(row.verdict));
   return stages;
 }
 
@@ -58,6 +59,21 @@ TEST(LoopDetector, WithoutAPauseEveryMatchOfAViewIsJudgedForItself) {
   LoopDetector detector(config);
   for (std::uint64_t frame = 0; frame < 3; ++frame) EXPECT_TRUE(stages(detector, frame).empty());
   EXPECT_EQ(stages(detector, 20), (std::vector<std::string>{"accepted", "accepted", "similarity"}));
+}
+
+TEST(LoopDetector, WhatIsRefusedEarlyIsMeasuredIfOneAsks) {
+  Config config = profile("paper");
+  config.retrieve.window_frames = 0;
+  for (const bool measures_all : {false, true}) {
+    config.verify.measure_all = measures_all;
+    LoopDetector detector(config);
+    for (std::uint64_t frame = 0; frame < 3; ++frame) judged(detector, frame);
+    const auto rows = judged(detector, 20);
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_EQ(core::stage_of(rows[1].verdict), "pause");
+    EXPECT_EQ(core::evidence_of(rows[1].verdict).geometry.has_value(), measures_all);
+    EXPECT_EQ(core::evidence_of(rows[2].verdict).geometry.has_value(), measures_all);
+  }
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <samewhere/map/local_bundle.hpp>
 #include <samewhere/map/part.hpp>
 #include <samewhere/map/triangulate.hpp>
+#include <samewhere/pipeline/correction.hpp>
 #include <samewhere/pipeline/mapping.hpp>
-#include <samewhere/pipeline/withdrawal.hpp>
 
 namespace samewhere::pipeline {
 
@@ -131,17 +131,11 @@ bool Mapping::correct(const scene::LoopEdge& heard) {
   const core::ScopedTimer timer(timings_, "correct");
   const auto loop = correct::between_holders(map_, heard);
   if (!loop) return false;  // both hang on one: nothing to correct
-  const correct::Closing closing = correct::close_loop(map_, *loop, config_.optimize);
+  const Correction correction = with_loop(map_, *loop, config_);
+  const correct::Closing& closing = correction.closing;
   think_again(closing, *loop);
-  if (closing.withdrawn.empty()) {
-    apply(closing.edit);
-  } else {
-    map_ = with_places_parted(map_, scene::apply(map_, closing.edit), config_);
-  }
+  map_ = correction.map;
   if (!closing.believed.empty()) full_bundles_.note_correction(map_);
-  for (const auto& believed : closing.believed)
-    for (const auto& edit : map::fuse_across(map_, believed, config_.map, config_.features))
-      apply(edit);
   return !closing.withdrawn.empty();
 }
 

@@ -14,6 +14,12 @@ bool is_refused_by_graph(const core::Verdict& verdict) {
          (refused->stage == core::Refusal::kGraph || refused->stage == core::Refusal::kWithdrawn);
 }
 
+// A person's word holds whatever the thresholds.
+bool is_by_hand(const core::Verdict& verdict) {
+  const auto* loop = std::get_if<core::LoopClosure>(&verdict);
+  return loop != nullptr && loop->is_by_hand;
+}
+
 bool is_waiting(const core::Verdict& verdict) {
   const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
   return ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence;
@@ -90,7 +96,8 @@ std::vector<ReplayedRow> replay(const core::Ledger& ledger, const verify::Config
   const auto verdicts = std::move(judge).verdicts();
   std::vector<ReplayedRow> rows;
   for (const core::LedgerRow& row : ledger) {
-    const core::Verdict& after = verdicts.at(row.candidate.id);
+    const core::Verdict& after =
+        is_by_hand(row.verdict) ? row.verdict : verdicts.at(row.candidate.id);
     rows.push_back({row, after, outcome_of(row, after, config)});
   }
   return rows;

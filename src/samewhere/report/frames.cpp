@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/csv.hpp>
+#include <samewhere/core/errors.hpp>
 #include <samewhere/report/frames.hpp>
 
 namespace samewhere::report {
 namespace {
+
+constexpr int kPoseFields = 7;
 
 std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
   if (!world_from_camera) return ",,,,,,";
@@ -15,6 +18,12 @@ std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
   const Eigen::Quaterniond& q = world_from_camera->rotation;
   return fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}", t.x(), t.y(), t.z(), q.x(),
                      q.y(), q.z(), q.w());
+}
+
+// All fields of a record but those of the pose.
+std::string_view without_pose(std::string_view record) {
+  for (int i = 0; i < kPoseFields; ++i) record = record.substr(0, record.rfind(','));
+  return record;
 }
 
 }  // namespace
@@ -40,6 +49,26 @@ std::string frames_csv(const std::vector<FrameRecord>& frames) {
                    frame.world_from_camera ? 1 : 0, pose.num_inliers, keyframe,
                    pose_fields(frame.world_from_camera));
   }
+  return text;
+}
+
+std::string with_poses(const std::string& frames_csv, const core::Trajectory& trajectory) {
+  const std::vector<std::string_view> records = core::csv_records(frames_csv);
+  std::string text;
+  std::size_t num_measured = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const bool is_measured = i > 0 && !records[i].ends_with(pose_fields({}) + "\n");
+    if (is_measured && num_measured < trajectory.size()) {
+      const core::Rigid3& pose = trajectory[num_measured].world_from_camera;
+      text += fmt::format("{},{}\n", without_pose(records[i]), pose_fields(pose));
+    } else {
+      text += records[i];
+    }
+    num_measured += is_measured ? 1 : 0;
+  }
+  if (num_measured != trajectory.size())
+    throw core::InputError(fmt::format("frames.csv: {} measured poses; expected {}, as in the map",
+                                       num_measured, trajectory.size()));
   return text;
 }
 

@@ -53,8 +53,9 @@ Json scores_of(const core::Verdict& verdict) {
     scores["num_sequence_inliers"] = evidence.sequence->num_inliers;
   }
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
-  if (loop != nullptr && loop->scale_is_free && loop->match_from_query)
-    add_score(scores, "scale", loop->match_from_query->scale);
+  const std::optional<core::Sim3> pose = match_from_query_of(verdict);
+  if (pose && (pose->scale != 1.0 || (loop != nullptr && loop->scale_is_free)))
+    add_score(scores, "scale", pose->scale);
   return scores;
 }
 
@@ -73,6 +74,8 @@ Json entry_of(const core::LedgerRow& row) {
                 {"match_from_query", pose_of(row.verdict)}};
   if (row.candidate.is_foretold) entry["is_foretold"] = true;
   if (row.candidate.is_lost) entry["is_lost"] = true;
+  const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
+  if (loop != nullptr && loop->is_by_hand) entry["is_by_hand"] = true;
   return entry;
 }
 

@@ -15,7 +15,8 @@ std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict);
 // loops.json, version 1: for each candidate its last verdict with stage, reason, every score of its
 // Evidence by name, and match_from_query as [tx, ty, tz, qx, qy, qz, qw] or null. Scores that are
 // not finite are left out. "is_foretold": true where no search found the candidate,
-// "is_lost": true where nobody knew where the view was taken.
+// "is_lost": true where nobody knew where the view was taken; "is_by_hand": true where a person
+// accepted it.
 std::string loops_json(const core::Ledger& ledger);
 
 // One row as an entry of loops.json, on one line; with "query_session" and "match_session" if the

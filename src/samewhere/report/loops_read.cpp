@@ -35,6 +35,7 @@ class Entry {
       core::LoopClosure loop{.candidate = row_.candidate.id, .evidence = evidence};
       loop.match_from_query = pose();
       loop.scale_is_free = scores_.contains("scale");
+      loop.is_by_hand = json_.value("is_by_hand", false);
       row_.verdict = loop;
     } else if (verdict == "AMBIGUOUS") {
       row_.verdict = core::Ambiguous{row_.candidate.id, evidence, stage(), reason};

@@ -30,6 +30,7 @@ struct Config {
   double max_rival_chi_square = 100.0;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
+  bool measure_all = false;
 };
 
 inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
@@ -108,6 +109,10 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
   visit("loop_sigma_rad", config.loop_sigma_rad,
         {.help = "standard deviation of a loop's rotation, radians", .min = 1e-4, .max = 3.0});
+  visit(
+      "measure_all", config.measure_all,
+      {.help = "geometry is measured of candidates, too, that looks or the pause have refused: for "
+               "`ledger RUN replay`"});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {

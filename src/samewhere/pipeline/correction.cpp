@@ -1,0 +1,20 @@
+#include <utility>
+
+#include <samewhere/map/fuse.hpp>
+#include <samewhere/pipeline/correction.hpp>
+#include <samewhere/pipeline/withdrawal.hpp>
+
+namespace samewhere::pipeline {
+
+Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
+                     const Config& config) {
+  correct::Closing closing = correct::close_loop(map, loop, config.optimize);
+  scene::MapVersion corrected = apply(map, closing.edit);
+  if (!closing.withdrawn.empty()) corrected = with_places_parted(map, std::move(corrected), config);
+  for (const auto& believed : closing.believed)
+    for (const auto& edit : map::fuse_across(corrected, believed, config.map, config.features))
+      corrected = apply(std::move(corrected), edit);
+  return {std::move(corrected), std::move(closing)};
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <samewhere/correct/loop_corrector.hpp>
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/scene/map_version.hpp>
+
+namespace samewhere::pipeline {
+
+// What a loop made of a map.
+struct Correction {
+  scene::MapVersion map;
+  correct::Closing closing;  // as it was carried out
+};
+
+// The map with one more loop: poses are solved (correct::close_loop), places that loops withdrawn
+// for its sake had made one are parted, and what both ends of those that are believed from now on
+// show is fused. A loop that is refused moves nothing.
+Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
+                     const Config& config);
+
+}  // namespace samewhere::pipeline
