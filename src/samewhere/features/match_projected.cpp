@@ -27,8 +27,8 @@ struct Alike {
 };
 
 std::optional<Match> best_near(const ProjectedPoint& point, const unsigned char* descriptor,
-                               const Features& features, const PixelGrid& grid, double radius_px,
-                               const Config& config) {
+                               const PixelGrid& grid, double radius_px, const Config& config) {
+  const Features& features = grid.features();
   const auto octave_of = [&](int feature) {
     return features.octave[static_cast<std::size_t>(feature)];
   };
@@ -61,7 +61,8 @@ int octave_at(int octave, double described_range_m, double range_m, const Config
 }
 
 PixelGrid::PixelGrid(const Features& features, cv::Size image_size_px)
-    : num_columns_(image_size_px.width / kCell_px + 1),
+    : features_(features),
+      num_columns_(image_size_px.width / kCell_px + 1),
       num_rows_(image_size_px.height / kCell_px + 1),
       first_of_cell_(static_cast<std::size_t>(num_columns_ * num_rows_) + 1, 0),
       placed_(features.undistorted_px.size()) {
@@ -92,8 +93,7 @@ std::vector<Match> match_projected(const std::vector<ProjectedPoint>& points,
   std::vector<std::optional<Match>> of_feature(static_cast<std::size_t>(features.size()));
   for (const auto& point : points) {
     const double radius = radius_px * scales[static_cast<std::size_t>(point.octave)];
-    const auto match =
-        best_near(point, point_descriptors.ptr(point.row), features, grid, radius, config);
+    const auto match = best_near(point, point_descriptors.ptr(point.row), grid, radius, config);
     if (!match) continue;
     auto& holder = of_feature[static_cast<std::size_t>(match->second)];
     if (!holder || match->distance_bits < holder->distance_bits) holder = match;

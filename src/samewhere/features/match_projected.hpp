@@ -12,7 +12,10 @@ namespace samewhere::features {
 // The features of a picture, sorted into cells, to find those near a pixel.
 class PixelGrid {
  public:
+  // `features` outlive it.
   PixelGrid(const Features& features, cv::Size image_size_px);
+
+  const Features& features() const { return features_; }
 
   // Calls visit(index) for each feature whose undistorted pixel lies within `radius_px` of `pixel`,
   // cell by cell.
@@ -40,6 +43,7 @@ class PixelGrid {
 
   static int cell_of(double coordinate_px, int num_cells);
 
+  const Features& features_;
   int num_columns_;
   int num_rows_;
   std::vector<std::size_t> first_of_cell_;  // into placed_, and one more: its size
