@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -100,11 +101,7 @@ std::vector<report::Figure> figures_of(const core::LedgerRow& row) {
 
 void show(const LedgerCommand& command) {
   const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
-  if (command.candidate >= ledger.size())
-    throw core::InputError(fmt::format("{}: there is no candidate {}; expected 0 to {}",
-                                       command.folder, command.candidate,
-                                       static_cast<long>(ledger.size()) - 1));
-  print_figures(figures_of(ledger[command.candidate]));
+  print_figures(figures_of(pipeline::row_of(ledger, command.candidate, command.folder)));
 }
 
 core::Ledger rows_after(const std::vector<pipeline::ReplayedRow>& replayed) {
@@ -139,6 +136,14 @@ void replay(const LedgerCommand& command) {
 }
 
 void change(const LedgerCommand& command, pipeline::Word word) {
+  constexpr const char* kSections[] = {"optimize.", "map.", "verify."};
+  for (const auto& assignment : command.assignments)
+    if (std::none_of(std::begin(kSections), std::end(kSections),
+                     [&](const char* section) { return assignment.starts_with(section); }))
+      throw core::InputError(
+          "--set " + assignment +
+          ": expected a setting of optimize, map or verify; the others belong to "
+          "what the run has seen");
   const auto changed =
       pipeline::change_run(command.folder, command.candidate, word, command.assignments);
   fmt::print("{}", lines_of(changed.rows));
@@ -146,8 +151,8 @@ void change(const LedgerCommand& command, pipeline::Word word) {
       {{"loops", fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
        {"farthest that a keyframe moved", fmt::format("{:.3f} m", changed.farthest_m)}});
   fmt::print(
-      "Written anew: map.sw, loops.json, trajectory.tum, frames.csv, map.ply. report.html still "
-      "shows the run as it was.\n");
+      "Written anew: map.sw, loops.json, trajectory.tum, odometry.tum, frames.csv, map.ply.\n"
+      "As it was: report.html, and what `samewhere dense` made.\n");
 }
 
 void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {

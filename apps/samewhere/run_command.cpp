@@ -169,7 +169,8 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   sub->add_flag_callback(
       "--measure-all",
       [command] { command->config.assignments.push_back("verify.measure_all=true"); },
-      "measure candidates, too, that are refused already, so that `ledger RUN replay` knows all");
+      "measure candidates, too, that verify.min_similarity or verify.pause_frames refuse, so that "
+      "`ledger RUN replay` knows all");
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;

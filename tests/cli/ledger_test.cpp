@@ -66,6 +66,17 @@ TEST_F(LedgerCommand, ReplaysWithOtherThresholds) {
   EXPECT_EQ(run("replay").exit_code, 2);
 }
 
+TEST_F(LedgerCommand, AnotherWordOnALoopNeedsAMap) {
+  for (const char* word : {"reject 0", "force 1"}) {
+    const Outcome without_map = run(word);
+    EXPECT_EQ(without_map.exit_code, 2);
+    EXPECT_EQ(std::count(without_map.err.begin(), without_map.err.end(), '\n'), 1);
+  }
+  EXPECT_THAT(run("reject 2").err, HasSubstr("no candidate 2; expected 0 to 1"));
+  EXPECT_THAT(run("reject 0 --set features.num_levels=4").err,
+              HasSubstr("optimize, map or verify"));
+}
+
 TEST_F(LedgerCommand, AFolderThatNoRunWroteIsRefusedInOneLine) {
   folder_.write("loops.json", std::string(kLoops).substr(0, 300));
   const Outcome cut = run("list");

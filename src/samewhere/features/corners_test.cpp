@@ -63,6 +63,25 @@ TEST(Corners, MoveByPartsOfAPixel) {
   EXPECT_LT(mean_squared_error(true), 0.8 * mean_squared_error(false));
 }
 
+TEST(SpreadEvenly, TwoOfEachCellFirstThenThoseOfEachLevelInTurn) {
+  const Config config{.num_features = 6, .num_levels = 2, .scale_factor = 2.0, .cell_px = 40};
+  // one cell is crowded, another holds two weak corners, a third one lies on the upper level
+  std::vector<Corner> corners;
+  for (int i = 0; i < 5; ++i)
+    corners.push_back({{5.0F + static_cast<float>(i), 5.0F}, 0, 100.0F - static_cast<float>(i)});
+  corners.push_back({{3.0F, 3.0F}, 1, 90.0F});  // of the same part of the picture
+  corners.push_back({{100.0F, 5.0F}, 0, 2.0F});
+  corners.push_back({{105.0F, 5.0F}, 0, 1.0F});
+  const auto strength = [](const Corner& corner) { return corner.strength; };
+  std::vector<float> kept;
+  for (const Corner& corner : spread_evenly(corners, config)) kept.push_back(strength(corner));
+  EXPECT_EQ(kept, (std::vector<float>{100.0F, 2.0F, 99.0F, 1.0F, 90.0F, 98.0F}));
+  std::reverse(corners.begin(), corners.end());
+  std::vector<float> reversed;
+  for (const Corner& corner : spread_evenly(corners, config)) reversed.push_back(strength(corner));
+  EXPECT_EQ(reversed, kept) << "whatever order they come in";
+}
+
 TEST(Describe, TurnsWithThePicture) {
   cv::Mat image(101, 101, CV_8U);
   cv::RNG random(7);

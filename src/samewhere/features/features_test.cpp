@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 #include <set>
 
@@ -131,6 +132,44 @@ TEST(MatchPair, APatternThatRepeatsIsRefusedByTheRatio) {
   cv::Mat twice;
   cv::vconcat(view.features->descriptors, view.features->descriptors, twice);
   EXPECT_TRUE(match_pair(view.features->descriptors, twice, {}).empty());
+}
+
+TEST(MatchPair, TheDistanceIsHowManyBitsDiffer) {
+  cv::Mat tables(2, 32, CV_8U);
+  cv::RNG random(3);
+  for (int i = 0; i < 100; ++i) {
+    random.fill(tables, cv::RNG::UNIFORM, 0, 256);
+    int num_different = 0;
+    for (int byte = 0; byte < tables.cols; ++byte) {
+      const auto bits = static_cast<unsigned>(tables.at<std::uint8_t>(0, byte) ^
+                                              tables.at<std::uint8_t>(1, byte));
+      num_different += std::popcount(bits);
+    }
+    EXPECT_EQ(distance_bits(tables.ptr(0), tables.ptr(1)), num_different);
+  }
+  EXPECT_EQ(distance_bits(tables.ptr(0), tables.ptr(0)), 0);
+}
+
+TEST(PixelGrid, VisitsWhatLiesWithinTheRadiusAndNothingElse) {
+  Features features;
+  core::Random random(5);
+  for (int i = 0; i < 500; ++i)  // undistorted, some lie outside the picture
+    features.raw_px.emplace_back(random.uniform(-60.0, 700.0), random.uniform(-60.0, 540.0));
+  features.undistorted_px = features.raw_px;
+  const PixelGrid grid(features, {640, 480});
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector2d centre(random.uniform(-80.0, 720.0), random.uniform(-80.0, 560.0));
+    const double radius_px = random.uniform(1.0, 90.0);
+    std::set<int> visited;
+    grid.visit_within(centre, radius_px,
+                      [&](int index) { EXPECT_TRUE(visited.insert(index).second) << "twice"; });
+    std::set<int> expected;
+    for (int k = 0; k < features.size(); ++k) {
+      const Eigen::Vector2f& pixel = features.undistorted_px[static_cast<std::size_t>(k)];
+      if ((pixel.cast<double>() - centre).norm() <= radius_px) expected.insert(k);
+    }
+    EXPECT_EQ(visited, expected);
+  }
 }
 
 TEST(MatchProjected, FindsEachFeatureWhereItIs) {

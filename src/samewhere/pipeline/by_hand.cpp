@@ -26,8 +26,6 @@ namespace {
 using core::InputError;
 using scene::MapVersion;
 
-constexpr const char* kByHand = "taken back by hand";
-
 std::string name_of(const core::LedgerRow& row) {
   return fmt::format("candidate {}", row.candidate.id.index());
 }
@@ -48,6 +46,33 @@ core::LedgerRow refused(core::LedgerRow row, const std::string& reason) {
   return row;
 }
 
+core::LedgerRow accepted(core::LedgerRow row, const Config& config, bool is_by_hand) {
+  core::LoopClosure loop{.candidate = row.candidate.id, .evidence = core::evidence_of(row.verdict)};
+  loop.match_from_query = report::match_from_query_of(row.verdict);
+  loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;
+  loop.information = verify::loop_information(config.verify);
+  loop.is_by_hand = is_by_hand;
+  row.verdict = loop;
+  return row;
+}
+
+// What the run knows of the loop.
+core::LedgerRow known_of(const scene::LoopEdge& loop, const core::Ledger& ledger) {
+  const auto found = std::find_if(ledger.begin(), ledger.end(), [&](const core::LedgerRow& row) {
+    return row.candidate.id == loop.cause;
+  });
+  if (found != ledger.end()) return *found;
+  throw InputError(
+      fmt::format("the map has a loop of candidate {}, which is not there", loop.cause.index()));
+}
+
+void require_not_lost(const core::LedgerRow& row) {
+  if (!row.candidate.is_lost) return;
+  throw InputError(name_of(row) +
+                   " was taken for a view of which nobody knew where it is; expected a candidate "
+                   "for a loop");
+}
+
 const scene::Keyframe& keyframe_of(const MapVersion& map, core::FrameId frame,
                                    const core::LedgerRow& row) {
   for (std::size_t i = 0; i < map.keyframes.size(); ++i)
@@ -59,10 +84,7 @@ const scene::Keyframe& keyframe_of(const MapVersion& map, core::FrameId frame,
 core::Sim3 measured_pose(const core::LedgerRow& row) {
   if (core::is_loop(row.verdict))
     throw InputError(name_of(row) + " is a loop already; expected one that was refused");
-  if (row.candidate.is_lost)
-    throw InputError(name_of(row) +
-                     " was taken for a view of which nobody knew where it is; expected a candidate "
-                     "for a loop");
+  require_not_lost(row);
   const auto pose = report::match_from_query_of(row.verdict);
   if (!pose)
     throw InputError(
@@ -77,10 +99,16 @@ scene::LoopEdge forced_edge(const MapVersion& map, const core::LedgerRow& row,
   const core::Sim3 match_from_query = measured_pose(row);
   const scene::Keyframe& query = keyframe_of(map, row.candidate.query, row);
   const scene::Keyframe& match = keyframe_of(map, row.candidate.match, row);
-  if (query.log_scale != 0.0 || match.log_scale != 0.0)
+  const double stretch = std::max(std::abs(query.log_scale), std::abs(match.log_scale));
+  if (stretch > config.optimize.loop_scale_sigma)
     throw InputError(name_of(row) +
-                     ": loops have changed the lengths of this map without depth since the pose "
-                     "was measured");
+                     ": loops have changed the lengths of this map without depth, in which its "
+                     "pose was measured");
+  if (is_without_depth(map) && !is_live(match))
+    throw InputError(
+        fmt::format("{}: frame {} is a keyframe no more, and without depth nobody "
+                    "knows what its pose was measured from",
+                    name_of(row), match.view.frame.index()));
   const auto edge =
       correct::between_holders(map, {query.id, match.id, rigid_part(match_from_query),
                                      verify::loop_information(config.verify), row.candidate.id,
@@ -97,24 +125,6 @@ MapVersion bundled(MapVersion map, const Config& config) {
   return apply(std::move(map), edit);
 }
 
-const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
-                              const std::filesystem::path& folder) {
-  if (candidate < ledger.size()) return ledger[candidate];
-  throw InputError(fmt::format("{}: there is no candidate {}; expected 0 to {}", folder.string(),
-                               candidate, static_cast<long>(ledger.size()) - 1));
-}
-
-// The rows of loops that another one has put in doubt know no evidence.
-void add_evidence(core::Ledger& rows, const core::Ledger& ledger) {
-  for (core::LedgerRow& row : rows) {
-    const auto index = row.candidate.id.index();
-    auto* rejection = std::get_if<core::Rejection>(&row.verdict);
-    if (rejection == nullptr || index >= ledger.size()) continue;
-    row.candidate = ledger[index].candidate;
-    rejection->evidence = core::evidence_of(ledger[index].verdict);
-  }
-}
-
 double farthest_m(const MapVersion& before, const MapVersion& after) {
   double farthest = 0.0;
   for (std::size_t i = 0; i < before.keyframes.size(); ++i) {
@@ -126,61 +136,75 @@ double farthest_m(const MapVersion& before, const MapVersion& after) {
   return farthest;
 }
 
-ByHand with_word(const MapVersion& map, const core::LedgerRow& row, Word word, const Config& config,
-                 const std::filesystem::path& folder) {
-  try {
-    return word == Word::kReject ? rejected_by_hand(map, row, config)
-                                 : forced_by_hand(map, row, config);
-  } catch (const InputError& error) {
-    throw InputError((folder / "loops.json").string() + ": " + error.what());
-  }
+ByHand with_word(const scene::StoredMap& stored, const core::LedgerRow& row, Word word,
+                 const core::Ledger& ledger, const Config& config) {
+  const auto& keyframes = stored.map.keyframes;
+  if (keyframes.empty() || keyframes.back().view.frame.session() != 0)
+    throw InputError("its map holds more than one run; expected that of a single one");
+  return word == Word::kReject ? rejected_by_hand(stored.map, row, config)
+                               : forced_by_hand(stored.map, row, ledger, config);
 }
 
-void write_files(const std::filesystem::path& folder, const scene::StoredMap& stored,
-                 const core::Ledger& ledger) {
-  core::write_file(folder / "loops.json", report::loops_json(ledger));
+struct Text {
+  const char* file = nullptr;
+  std::string text;
+};
+
+std::vector<Text> texts_of(const scene::StoredMap& stored, const core::Ledger& ledger,
+                           const std::string& frames_csv) {
   const core::Trajectory trajectory = trajectory_of(stored.map, stored.extras.frames);
-  core::write_file(folder / "trajectory.tum", core::tum_text(trajectory));
-  const std::string frames = core::read_file(folder / "frames.csv");
-  core::write_file(folder / "frames.csv", report::with_poses(frames, trajectory));
-  core::write_file(folder / "map.ply", report::ply_bytes(points_of(stored.map)));
+  return {{"loops.json", report::loops_json(ledger)},
+          {"trajectory.tum", core::tum_text(trajectory)},
+          {"odometry.tum", core::tum_text(odometry_of(stored.map, stored.extras.frames))},
+          {"frames.csv", report::with_poses(frames_csv, trajectory)},
+          {"map.ply", report::ply_bytes(points_of(stored.map))}};
+}
+
+// What comes after the files of the run are read, and before they are written.
+template <class Work>
+auto naming(const std::filesystem::path& folder, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(folder.string() + ": " + error.what());
+  }
 }
 
 }  // namespace
 
 ByHand rejected_by_hand(const MapVersion& map, const core::LedgerRow& row, const Config& config) {
   const core::CandidateId cause = row.candidate.id;
+  require_not_lost(row);
   if (!core::is_loop(row.verdict) && !holds(map, cause))
     throw InputError(fmt::format("{} is no loop ({}, {}); expected one that was accepted",
                                  name_of(row), core::name_of(row.verdict),
                                  core::stage_of(row.verdict)));
   // without a pose, or between views that hang on one keyframe, it moved nothing
-  return {holds(map, cause) ? without_loop(map, cause, config) : map, {refused(row, kByHand)}};
+  return {holds(map, cause) ? without_loop(map, cause, config) : map,
+          {refused(row, "taken back by hand")}};
 }
 
-ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const Config& config) {
+ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const core::Ledger& ledger,
+                      const Config& config) {
   const core::CandidateId cause = row.candidate.id;
-  const MapVersion& asked = holds(map, cause) ? without_loop(map, cause, config) : map;
-  const scene::LoopEdge edge = forced_edge(asked, row, config);
-  Correction correction = with_loop(asked, edge, config);
-  if (const auto& bent = correction.closing.refused)
+  const scene::LoopEdge edge = forced_edge(map, row, config);
+  Correction correction =
+      with_loop(holds(map, cause) ? without_loop(map, cause, config) : map, edge, config);
+  const correct::Closing& closing = correction.closing;
+  if (closing.refused)
     throw InputError(
-        fmt::format("{}: odometry and the other loops bend it by chi-square {:.1f}, above "
-                    "optimize.loop_chi2 = {:.1f}; a larger one, or another optimize.loop_loss, "
-                    "would take it",
-                    name_of(row), bent->chi2, config.optimize.loop_chi2));
-  core::LoopClosure loop{.candidate = cause, .evidence = core::evidence_of(row.verdict)};
-  loop.match_from_query = report::match_from_query_of(row.verdict);
-  loop.scale_is_free = loop.match_from_query->scale != 1.0;
-  loop.information = edge.information;
-  loop.is_by_hand = true;
-  ByHand changed{bundled(std::move(correction.map), config), {{row.candidate, loop}}};
-  for (const auto& bent : correction.closing.withdrawn)
+        fmt::format("{}: {}; a larger optimize.loop_chi2, or another "
+                    "optimize.loop_loss, would take it",
+                    name_of(row), bent_by(*closing.refused, config)));
+  ByHand changed{{}, {accepted(row, config, true)}};
+  for (const auto& bent : closing.withdrawn)
     changed.rows.push_back(refused(
-        {{.id = bent.loop.cause}, core::Rejection{}},
-        fmt::format(
-            "its edge is bent by chi-square {:.1f}, since candidate {} was accepted by hand",
-            bent.chi2, cause.index())));
+        known_of(bent.loop, ledger),
+        fmt::format("{}, since {} was accepted by hand", bent_by(bent, config), name_of(row))));
+  for (const auto& believed : closing.believed)
+    if (believed.cause != cause)
+      changed.rows.push_back(accepted(known_of(believed, ledger), config, false));
+  changed.map = bundled(std::move(correction.map), config);
   return changed;
 }
 
@@ -188,21 +212,22 @@ ChangedRun change_run(const std::filesystem::path& folder, std::size_t candidate
                       const std::vector<std::string>& assignments) {
   const Config config = config_of_run(folder, assignments);
   core::Ledger ledger = ledger_of_run(folder);
-  const core::LedgerRow& row = row_of(ledger, candidate, folder);
+  const core::LedgerRow row = row_of(ledger, candidate, folder);
+  const std::string frames_csv = core::read_file(folder / "frames.csv");
   scene::MapFile file = scene::MapFile::open(folder / "map.sw", scene::MapAccess::kExtend);
   scene::StoredMap stored = file.load();
-  ByHand changed = with_word(stored.map, row, word, config, folder);
-  add_evidence(changed.rows, ledger);
+  ByHand changed = naming(folder, [&] { return with_word(stored, row, word, ledger, config); });
   ChangedRun result{changed.rows, stored.map.loops.size(), changed.map.loops.size(),
                     farthest_m(stored.map, changed.map)};
   scene::MapExtras news;
   for (const auto& changed_row : changed.rows) {
     news.ledger.push_back(report::ledger_row_json(changed_row));
-    ledger[changed_row.candidate.id.index()] = changed_row;
+    ledger[changed_row.candidate.id.index()] = changed_row;  // which came from there
   }
   stored.map = std::move(changed.map);
+  const auto texts = naming(folder, [&] { return texts_of(stored, ledger, frames_csv); });
   file.commit(stored.map, news);
-  write_files(folder, stored, ledger);
+  for (const auto& [name, text] : texts) core::write_file(folder / name, text);
   return result;
 }
 

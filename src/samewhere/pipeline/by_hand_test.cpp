@@ -1,6 +1,6 @@
 #include <string>
+#include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,10 +9,13 @@
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/pipeline/by_hand.hpp>
+#include <samewhere/pipeline/map_export.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/pipeline/slam.hpp>
 #include <samewhere/pipeline/test_rooms.hpp>
 #include <samewhere/report/frames.hpp>
 #include <samewhere/report/loops.hpp>
+#include <samewhere/report/ply.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -43,9 +46,15 @@ class ByHandInRooms : public LookAlikeRooms {
     return row;
   }
 
+  // What the judge had said of the true loop of this query.
+  static core::LedgerRow told_of(std::size_t query) {
+    const scene::LoopEdge loop = true_loop(query, 14 - query);
+    return accepted(row_of(loop, loop.cause.index()));
+  }
+
   std::string why_not_forced(const core::LedgerRow& row) const {
     try {
-      forced_by_hand(map_, row, config_);
+      forced_by_hand(map_, row, {row}, config_);
     } catch (const core::InputError& error) {
       return error.what();
     }
@@ -55,7 +64,8 @@ class ByHandInRooms : public LookAlikeRooms {
 
 TEST_F(ByHandInRooms, AForcedLoopCorrectsTheMapAndSaysWhoSpoke) {
   map_ = with_next(with_next(map_));
-  const ByHand changed = forced_by_hand(map_, row_of(true_loop(13, 1), 3), config_);
+  const core::LedgerRow row = row_of(true_loop(13, 1), 3);
+  const ByHand changed = forced_by_hand(map_, row, {row}, config_);
   ASSERT_EQ(changed.map.loops.size(), 1U);
   EXPECT_EQ(changed.map.loops[0].cause, core::CandidateId(3));
   EXPECT_LT(rmse_m(changed.map), rmse_m(map_));
@@ -82,6 +92,23 @@ TEST_F(ByHandInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
   EXPECT_THAT(why_not_forced(row_of(lie(), 5)), HasSubstr("chi-square"));
 }
 
+// Two true loops against a lie that was believed until the second one was forced.
+TEST_F(ByHandInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
+  map_ = with_next(with_next(with_next(map_)));
+  const core::LedgerRow lie_row = accepted(row_of(lie(), kLie.index()));
+  const core::LedgerRow row = row_of(true_loop(14, 0), 5);
+  const MapVersion believed = closed(closed(map_, lie()), true_loop(13, 1));
+  const ByHand changed = forced_by_hand(believed, row, {lie_row, row, told_of(13)}, config_);
+  ASSERT_EQ(changed.rows.size(), 2U) << "what it leaves as it was gets none";
+  EXPECT_EQ(changed.rows[0].candidate.id, row.candidate.id);
+  const core::LedgerRow& withdrawn = changed.rows[1];
+  EXPECT_EQ(withdrawn.candidate.id, kLie);
+  EXPECT_FALSE(core::is_loop(withdrawn.verdict));
+  EXPECT_THAT(core::reason_of(withdrawn.verdict), HasSubstr("candidate 5"));
+  EXPECT_TRUE(core::evidence_of(withdrawn.verdict).geometry) << "its evidence is kept";
+  EXPECT_EQ(changed.map.loops.size(), 2U);
+}
+
 TEST_F(ByHandInRooms, WhatCannotBeForcedSaysWhy) {
   const core::LedgerRow row = row_of(lie(), 5);
   EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop already"));
@@ -95,9 +122,11 @@ TEST_F(ByHandInRooms, WhatCannotBeForcedSaysWhy) {
   elsewhere.candidate.query = core::FrameId(999);
   EXPECT_THAT(why_not_forced(elsewhere), HasSubstr("frame 999 is no keyframe"));
   EXPECT_THROW(rejected_by_hand(map_, row, config_), core::InputError);
+  lost.verdict = accepted(row).verdict;
+  EXPECT_THROW(rejected_by_hand(map_, lost, config_), core::InputError) << "no edge to take back";
 }
 
-// The folder of a finished run through the rooms.
+// The folder of a finished run through the rooms, lost between the two.
 class ByHandInAFolder : public ByHandInRooms {
  protected:
   ByHandInAFolder() {
@@ -105,11 +134,7 @@ class ByHandInAFolder : public ByHandInRooms {
     scene::MapFile::create(folder_.root() / "map.sw", {}).commit(map_, {.frames = frames()});
     folder_.write("config.yaml", "seed: 3\n");
     folder_.write("loops.json", report::loops_json({row_of(true_loop(13, 1), 0)}));
-    std::vector<report::FrameRecord> records;
-    for (const core::FramePose& pose : frames())
-      records.push_back({pose, "a \"name\",\nin lines", core::Rigid3{}});
-    records.push_back({{.frame = core::FrameId(records.size()), .stamp_s = 99.0}, "lost", {}});
-    folder_.write("frames.csv", report::frames_csv(records));
+    folder_.write("frames.csv", frames_csv(std::vector<core::StampedPose>(map_.keyframes.size())));
   }
 
   std::vector<core::FramePose> frames() const {
@@ -124,7 +149,40 @@ class ByHandInAFolder : public ByHandInRooms {
     return frames;
   }
 
-  core::Trajectory trajectory() const { return core::read_tum(folder_.root() / "trajectory.tum"); }
+  std::string frames_csv(const core::Trajectory& trajectory) const {
+    std::vector<report::FrameRecord> records;
+    for (const core::FramePose& pose : frames()) {
+      if (records.size() == kPerRoom) records.push_back({{.stamp_s = 0.55}, "lost", {}});
+      const core::Rigid3& world_from_camera =
+          trajectory.at(pose.reference_keyframe.index()).world_from_camera;
+      records.push_back({pose, "a \"name\",\nin lines", world_from_camera});
+    }
+    return report::frames_csv(records);
+  }
+
+  // What the files say of the map that is stored by now.
+  void expect_files_of_map() const {
+    const scene::StoredMap stored = scene::MapFile::open(folder_.root() / "map.sw").load();
+    const core::Trajectory trajectory = trajectory_of(stored.map, stored.extras.frames);
+    EXPECT_TRUE(text_of("trajectory.tum") == core::tum_text(trajectory));
+    EXPECT_TRUE(text_of("frames.csv") == frames_csv(trajectory));
+    EXPECT_TRUE(text_of("map.ply") == report::ply_bytes(points_of(stored.map)));
+  }
+
+  std::string text_of(const char* name) const { return core::read_file(folder_.root() / name); }
+
+  std::size_t num_stored_loops() const {
+    return scene::MapFile::open(folder_.root() / "map.sw").load().map.loops.size();
+  }
+
+  std::string why_not_changed(std::size_t candidate, Word word) const {
+    try {
+      change_run(folder_.root(), candidate, word, {});
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "nothing was said";
+  }
 
   input::TestFolder folder_;
 };
@@ -135,30 +193,38 @@ TEST_F(ByHandInAFolder, ForcingAndRejectingAreWrittenDown) {
   EXPECT_EQ(forced.num_loops, 1U);
   EXPECT_GT(forced.farthest_m, 0.0);
   EXPECT_TRUE(core::is_loop(ledger_of_run(folder_.root())[0].verdict));
-  EXPECT_EQ(scene::MapFile::open(folder_.root() / "map.sw").load().map.loops.size(), 1U);
-  const core::Trajectory closed = trajectory();
-  EXPECT_EQ(closed.size(), map_.keyframes.size());
-  const std::string frames = core::read_file(folder_.root() / "frames.csv");
-  EXPECT_THAT(frames,
-              HasSubstr(fmt::format("{:.9f}", closed[9].world_from_camera.translation.x())));
-  EXPECT_THAT(frames, HasSubstr("99.000000,lost,"));
+  EXPECT_EQ(num_stored_loops(), 1U);
+  expect_files_of_map();
 
   const ChangedRun rejected = change_run(folder_.root(), 0, Word::kReject, {});
   EXPECT_EQ(rejected.num_loops, 0U);
+  EXPECT_EQ(num_stored_loops(), 0U);
   const core::Verdict verdict = ledger_of_run(folder_.root())[0].verdict;
   EXPECT_THAT(core::reason_of(verdict), HasSubstr("by hand"));
   EXPECT_TRUE(report::match_from_query_of(verdict)) << "it may be forced once more";
+  expect_files_of_map();
 }
 
 TEST_F(ByHandInAFolder, WhatCannotBeDoneChangesNothing) {
-  const std::string before = core::read_file(folder_.root() / "loops.json");
-  EXPECT_THROW(change_run(folder_.root(), 1, Word::kForce, {}), core::InputError);
-  EXPECT_THROW(change_run(folder_.root(), 0, Word::kReject, {}), core::InputError);
-  EXPECT_TRUE(core::read_file(folder_.root() / "loops.json") == before);
-  const MapVersion map = scene::MapFile::open(folder_.root() / "map.sw").load().map;
-  EXPECT_EQ(map.number, map_.number);
-  EXPECT_TRUE(map.loops.empty());
+  const std::string ledger = text_of("loops.json");
+  EXPECT_THAT(why_not_changed(1, Word::kForce), HasSubstr("expected 0 to 0"));
+  EXPECT_THAT(why_not_changed(0, Word::kReject), HasSubstr(folder_.root().string()));
+  folder_.write("frames.csv", report::frames_csv({}));
+  EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("0 measured poses; expected 14"));
+  EXPECT_TRUE(text_of("loops.json") == ledger);
+  EXPECT_EQ(num_stored_loops(), 0U);
   EXPECT_FALSE(std::filesystem::exists(folder_.root() / "trajectory.tum"));
+}
+
+TEST_F(ByHandInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
+  scene::MapFile file = scene::MapFile::open(folder_.root() / "map.sw", scene::MapAccess::kExtend);
+  MapVersion map = file.load().map;
+  scene::Edit edit =
+      map::start_map(map, features::test_view(world_, 0, map::test_walk(3)), core::Rigid3{});
+  edit.keyframes[0].view.frame = core::FrameId(0, 1);
+  map = apply(map, edit);
+  file.commit(map, {});
+  EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("more than one run"));
 }
 
 }  // namespace

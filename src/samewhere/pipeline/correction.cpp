@@ -1,5 +1,7 @@
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <samewhere/map/fuse.hpp>
 #include <samewhere/pipeline/correction.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
@@ -15,6 +17,11 @@ Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
     for (const auto& edit : map::fuse_across(corrected, believed, config.map, config.features))
       corrected = apply(std::move(corrected), edit);
   return {std::move(corrected), std::move(closing)};
+}
+
+std::string bent_by(const correct::BentLoop& bent, const Config& config) {
+  return fmt::format("its edge is bent by chi-square {:.1f}, above {:.1f}", bent.chi2,
+                     config.optimize.loop_chi2);
 }
 
 }  // namespace samewhere::pipeline

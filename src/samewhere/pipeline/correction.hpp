@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/scene/map_version.hpp>
@@ -17,5 +19,8 @@ struct Correction {
 // show is fused. A loop that is refused moves nothing.
 Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                      const Config& config);
+
+// Why a loop that the graph of loops does not believe is none.
+std::string bent_by(const correct::BentLoop& bent, const Config& config);
 
 }  // namespace samewhere::pipeline

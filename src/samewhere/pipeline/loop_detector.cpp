@@ -44,6 +44,7 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
       [](const core::Candidate&, const core::Sim3&) { return std::nullopt; }};
   verify::Config looks_alone = settings_.verify;
   looks_alone.min_views = 1;
+  looks_alone.measure_all = false;   // what was refused early is no place
   looks_alone.require_pose = false;  // whoever tracks the view among the place's points finds it
   std::vector<core::LedgerRow> rows;
   for (core::Candidate candidate :
@@ -153,11 +154,24 @@ core::GeometryEvidence LoopDetector::measure_geometry(const core::Candidate& can
                                   settings);
 }
 
+namespace {
+
+// What was measured for a replay alone says nothing of who is the best.
+core::Evidence judged_by(const core::Verdict& verdict) {
+  core::Evidence evidence = core::evidence_of(verdict);
+  const auto* refused = std::get_if<core::Rejection>(&verdict);
+  if (refused != nullptr &&
+      (refused->stage == core::Refusal::kSimilarity || refused->stage == core::Refusal::kPause))
+    evidence.geometry.reset();
+  return evidence;
+}
+
+}  // namespace
+
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const verify::Config& config) {
   const auto rank = [&](const core::LedgerRow& row) {
-    return std::pair(core::is_loop(row.verdict),
-                     verify::score(core::evidence_of(row.verdict), config));
+    return std::pair(core::is_loop(row.verdict), verify::score(judged_by(row.verdict), config));
   };
   const core::LedgerRow* best = nullptr;
   for (const auto& row : rows) {

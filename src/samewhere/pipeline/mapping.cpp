@@ -140,15 +140,11 @@ bool Mapping::correct(const scene::LoopEdge& heard) {
 }
 
 void Mapping::think_again(const correct::Closing& closing, const scene::LoopEdge& newest) {
-  const auto bent_by = [&](const correct::BentLoop& bent) {
-    return fmt::format("its edge is bent by chi-square {:.1f}, above {:.1f}", bent.chi2,
-                       config_.optimize.loop_chi2);
-  };
   if (closing.refused)
-    reject(closing.refused->loop, core::Refusal::kGraph, bent_by(*closing.refused));
+    reject(closing.refused->loop, core::Refusal::kGraph, bent_by(*closing.refused, config_));
   for (const auto& bent : closing.withdrawn) {
     reject(bent.loop, core::Refusal::kWithdrawn,
-           fmt::format("{}, since frames {} and {} are one place", bent_by(bent),
+           fmt::format("{}, since frames {} and {} are one place", bent_by(bent, config_),
                        map_.at(newest.query).view.frame.index(),
                        map_.at(newest.match).view.frame.index()));
   }

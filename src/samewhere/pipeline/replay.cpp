@@ -14,7 +14,7 @@ bool is_refused_by_graph(const core::Verdict& verdict) {
          (refused->stage == core::Refusal::kGraph || refused->stage == core::Refusal::kWithdrawn);
 }
 
-// A person's word holds whatever the thresholds.
+// Closed by a person's word: a loop whatever the thresholds.
 bool is_by_hand(const core::Verdict& verdict) {
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
   return loop != nullptr && loop->is_by_hand;

@@ -1,8 +1,10 @@
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <samewhere/core/csv.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
@@ -18,14 +20,14 @@ namespace {
 
 // Stamps of all frames, by position: the second column of frames.csv.
 std::vector<double> read_stamps(const std::filesystem::path& path) {
-  std::istringstream lines(core::read_file(path));
-  std::string line;
-  std::getline(lines, line);  // names of the columns
+  const std::string text = core::read_file(path);
   std::vector<double> stamps_s;
-  while (std::getline(lines, line)) {
-    const auto first = line.find(',');
+  bool is_heading = true;
+  for (const std::string_view record : core::csv_records(text)) {
+    if (std::exchange(is_heading, false)) continue;
+    const auto first = record.find(',');
     try {
-      stamps_s.push_back(std::stod(line.substr(first + 1)));
+      stamps_s.push_back(std::stod(std::string(record.substr(first + 1))));
     } catch (const std::exception&) {
       throw core::InputError(
           fmt::format("{}, line {}: expected index,stamp,...", path.string(), stamps_s.size() + 2));
@@ -83,6 +85,16 @@ Config config_of_run(const std::filesystem::path& folder,
 
 core::Ledger ledger_of_run(const std::filesystem::path& folder) {
   return report::read_loops_json(folder / "loops.json");
+}
+
+const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
+                              const std::filesystem::path& folder) {
+  if (candidate < ledger.size()) return ledger[candidate];
+  throw core::InputError(
+      ledger.empty()
+          ? fmt::format("{}: there is no candidate {}, nor any other", folder.string(), candidate)
+          : fmt::format("{}: there is no candidate {}; expected 0 to {}", folder.string(),
+                        candidate, ledger.size() - 1));
 }
 
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {

@@ -20,6 +20,10 @@ Config config_of_run(const std::filesystem::path& folder,
 // report::read_loops_json does.
 core::Ledger ledger_of_run(const std::filesystem::path& folder);
 
+// One of its rows. Throws InputError, naming the folder, if there are not so many.
+const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
+                              const std::filesystem::path& folder);
+
 // The figures of a finished run, measured anew from the files in its folder against the truth that
 // comes with its source (config.yaml says which). Recognition alone is told by its matches.txt.
 // Throws InputError if a file is missing or broken, or if the source is no longer there.

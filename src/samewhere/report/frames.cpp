@@ -67,7 +67,7 @@ std::string with_poses(const std::string& frames_csv, const core::Trajectory& tr
     num_measured += is_measured ? 1 : 0;
   }
   if (num_measured != trajectory.size())
-    throw core::InputError(fmt::format("frames.csv: {} measured poses; expected {}, as in the map",
+    throw core::InputError(fmt::format("{} measured poses; expected {}, as in the map",
                                        num_measured, trajectory.size()));
   return text;
 }

@@ -15,8 +15,8 @@ core::Trajectory measured_trajectory(const std::vector<FrameRecord>& frames);
 // reference keyframe, and world_from_camera (metres, quaternion; empty if not measured). RFC 4180.
 std::string frames_csv(const std::vector<FrameRecord>& frames);
 
-// The same file with other poses, one for each frame whose pose was measured. Throws InputError if
-// there are more or fewer of these.
+// The same file with other poses, one for each frame whose pose was measured. Throws InputError
+// that names no file if there are more or fewer of these.
 std::string with_poses(const std::string& frames_csv, const core::Trajectory& trajectory);
 
 }  // namespace samewhere::report
