@@ -143,8 +143,9 @@ TEST_F(WithoutDepth, TwoViewsBecomeTwoKeyframesThatSeeTheSameLandmarks) {
 
 TEST_F(WithoutDepth, AViewIsKeptWhenItMovedOrLostSightOfSomeLandmarks) {
   EXPECT_FALSE(is_worth_keeping(map_, tracked_at({}, 1.0), config_));
-  EXPECT_FALSE(is_worth_keeping(map_, tracked_at({}, 0.85), config_));
-  EXPECT_TRUE(is_worth_keeping(map_, tracked_at({}, 0.7), config_));
+  config_.min_tracked = 0;
+  EXPECT_FALSE(is_worth_keeping(map_, tracked_at({}, 0.55), config_));
+  EXPECT_TRUE(is_worth_keeping(map_, tracked_at({}, 0.45), config_));
   const auto moved = [](double x) {
     return core::Rigid3{Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
   };
