@@ -65,7 +65,7 @@ TEST(Corners, MoveByPartsOfAPixel) {
 
 TEST(SpreadEvenly, TwoOfEachCellFirstThenThoseOfEachLevelInTurn) {
   const Config config{.num_features = 6, .num_levels = 2, .scale_factor = 2.0, .cell_px = 40};
-  // one cell is crowded, another holds two weak corners, a third one lies on the upper level
+  // one cell is crowded, on two levels; another holds two weak corners
   std::vector<Corner> corners;
   for (int i = 0; i < 5; ++i)
     corners.push_back({{5.0F + static_cast<float>(i), 5.0F}, 0, 100.0F - static_cast<float>(i)});

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,14 +29,11 @@ std::string name_of(const core::LedgerRow& row) {
   return fmt::format("candidate {}", row.candidate.id.index());
 }
 
-const scene::LoopEdge* edge_of(const std::vector<scene::LoopEdge>& loops, core::CandidateId cause) {
-  const auto found = std::find_if(loops.begin(), loops.end(),
-                                  [&](const auto& loop) { return loop.cause == cause; });
-  return found == loops.end() ? nullptr : &*found;
-}
-
+// Believed or doubted.
 bool holds(const MapVersion& map, core::CandidateId cause) {
-  return edge_of(map.loops, cause) != nullptr || edge_of(map.doubted_loops, cause) != nullptr;
+  const auto is_it = [&](const scene::LoopEdge& loop) { return loop.cause == cause; };
+  return std::any_of(map.loops.begin(), map.loops.end(), is_it) ||
+         std::any_of(map.doubted_loops.begin(), map.doubted_loops.end(), is_it);
 }
 
 core::LedgerRow refused(core::LedgerRow row, const std::string& reason) {
@@ -160,7 +156,7 @@ std::vector<Text> texts_of(const scene::StoredMap& stored, const core::Ledger& l
           {"map.ply", report::ply_bytes(points_of(stored.map))}};
 }
 
-// What comes after the files of the run are read, and before they are written.
+// An error of the work names the folder of the run.
 template <class Work>
 auto naming(const std::filesystem::path& folder, const Work& work) {
   try {
