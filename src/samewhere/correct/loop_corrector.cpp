@@ -115,6 +115,8 @@ scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
 
 Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::Config& config) {
   core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
+  core::require(is_live(map.at(loop.query)) && is_live(map.at(loop.match)),
+                "a loop that is closed joins live keyframes");
   optimize::PoseGraph graph = pose_graph_of(map, config);
   const std::size_t num_before = graph.edges.size();
   const std::vector<LoopEdge> claims = claims_of(map, loop);

@@ -28,7 +28,7 @@ struct Config {
   int full_bundle_pace = 4000;
   int cull_after_keyframes = 3;
   double min_found_ratio = 0.25;
-  double redundant_ratio = 0.9;
+  double redundant_ratio = 0.7;
   int visible_after_frames = 2;
   int loop_lag_keyframes = 1;
   int keyframes_in_memory = 200;
@@ -139,7 +139,8 @@ inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
          .min = 0.0,
          .max = 1.0});
   visit("redundant_ratio", config.redundant_ratio,
-        {.help = "a keyframe goes if three others see this share of its landmarks as well",
+        {.help = "a keyframe goes if three others see more than this share of its landmarks as "
+                 "well; 1: none goes",
          .min = 0.1,
          .max = 1.0});
 }

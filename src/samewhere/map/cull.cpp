@@ -15,14 +15,7 @@ using scene::MapVersion;
 constexpr int kMinExpected = 2;  // keyframes that should see a landmark before it is blamed
 constexpr int kEnoughObservers = 3;
 
-bool has_depth(const MapVersion& map, const scene::Observation& observation) {
-  return map.at(observation.keyframe)
-             .view.features->depth_m[static_cast<std::size_t>(observation.slot)] > 0.0F;
-}
-
-bool is_unsupported(const MapVersion& map, const Landmark& landmark) {
-  return landmark.observations.size() == 1 && !has_depth(map, landmark.observations[0]);
-}
+bool is_unsupported(const Landmark& landmark) { return landmark.observations.size() == 1; }
 
 // Of the keyframes after its anchor, too few of those that should see the landmark do.
 bool is_missed(const MapVersion& map, const Landmark& landmark, const Config& config,
@@ -44,7 +37,7 @@ void cull_landmarks(const MapVersion& map, const Keyframe& anchor, scene::Edit& 
                     const Config& config, const features::Config& features) {
   for (const auto& id : anchor.slots) {
     if (!id.is_valid() || map.at(id).anchor != anchor.id) continue;
-    if (is_unsupported(map, map.at(id)) || is_missed(map, map.at(id), config, features))
+    if (is_unsupported(map.at(id)) || is_missed(map, map.at(id), config, features))
       edit.culled_landmarks.push_back(id);
   }
 }
@@ -93,7 +86,7 @@ std::optional<KeyframeId> most_redundant(const MapVersion& map, KeyframeId newes
         newest.index();
     if (is_late || !may_go(map, keyframe)) continue;
     const double ratio = redundant_ratio(map, keyframe);
-    if (ratio < highest_ratio) continue;
+    if (ratio <= highest_ratio) continue;
     highest_ratio = ratio;
     most = keyframe.id;
   }

@@ -46,12 +46,6 @@ class ByHandInRooms : public LookAlikeRooms {
     return row;
   }
 
-  // What the judge had said of the true loop of this query.
-  static core::LedgerRow told_of(std::size_t query) {
-    const scene::LoopEdge loop = true_loop(query, 14 - query);
-    return accepted(row_of(loop, loop.cause.index()));
-  }
-
   std::string why_not_forced(const core::LedgerRow& row) const {
     try {
       forced_by_hand(map_, row, {row}, config_);
@@ -92,13 +86,16 @@ TEST_F(ByHandInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
   EXPECT_THAT(why_not_forced(row_of(lie(), 5)), HasSubstr("chi-square"));
 }
 
-// Two true loops against a lie that was believed until the second one was forced.
+// Odometry and a true loop against a lie; a loop inside the first room has no part in it.
 TEST_F(ByHandInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
   map_ = with_next(with_next(with_next(map_)));
+  const scene::LoopEdge inside = loop(3, 0, inverse(truth(0)) * truth(3), core::CandidateId(2000));
+  const core::LedgerRow inside_row = accepted(row_of(inside, inside.cause.index()));
   const core::LedgerRow lie_row = accepted(row_of(lie(), kLie.index()));
-  const core::LedgerRow row = row_of(true_loop(14, 0), 5);
-  const MapVersion believed = closed(closed(map_, lie()), true_loop(13, 1));
-  const ByHand changed = forced_by_hand(believed, row, {lie_row, row, told_of(13)}, config_);
+  const core::LedgerRow row = row_of(true_loop(13, 1), 5);
+  const MapVersion believed = closed(closed(map_, inside), lie());
+  ASSERT_EQ(believed.loops.size(), 2U);
+  const ByHand changed = forced_by_hand(believed, row, {inside_row, lie_row, row}, config_);
   ASSERT_EQ(changed.rows.size(), 2U) << "what it leaves as it was gets none";
   EXPECT_EQ(changed.rows[0].candidate.id, row.candidate.id);
   const core::LedgerRow& withdrawn = changed.rows[1];

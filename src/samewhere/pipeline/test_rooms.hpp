@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/map/cull.hpp>
 #include <samewhere/map/fuse.hpp>
 #include <samewhere/map/local_bundle.hpp>
@@ -20,7 +21,14 @@ class LookAlikeRooms : public testing::Test {
   static constexpr std::size_t kPerRoom = 6;  // keyframes, before a loop is closed
   static inline const core::CandidateId kLie{7};
 
+  // Unless a test asks for it no keyframe is culled: what loops do to the map is plainer to see.
   LookAlikeRooms() {
+    config_.map.redundant_ratio = 1.0;
+    walk_both();
+  }
+
+  void walk_both() {
+    map_ = {};
     for (std::size_t i = 0; i < 2 * kPerRoom; ++i) map_ = with_next(map_);
   }
 
@@ -80,7 +88,7 @@ class LookAlikeRooms : public testing::Test {
   static scene::LoopEdge lie() { return loop(2 * kPerRoom - 1, kPerRoom - 1, {}, kLie); }
 
   scene::MapVersion closed(const scene::MapVersion& before, const scene::LoopEdge& heard) const {
-    return with_loop(before, heard, config_).map;
+    return with_loop(before, *correct::between_holders(before, heard), config_).map;
   }
 
   std::vector<core::LandmarkId> survivors(const scene::MapVersion& map) const {

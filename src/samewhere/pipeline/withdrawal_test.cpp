@@ -44,5 +44,22 @@ TEST_F(LookAlikeRooms, TrueLoopsThatComeLaterPartThemAgain) {
   EXPECT_LT(rmse_m(believed), 1.15 * rmse_m(never));
 }
 
+// What was culled while the lie was believed hung on the other room.
+TEST_F(LookAlikeRooms, TheyArePartedThoughKeyframesWentMeanwhile) {
+  config_.map.redundant_ratio = Config{}.map.redundant_ratio;
+  walk_both();
+  MapVersion believed = closed(map_, lie());
+  const std::size_t num_before = num_live(believed.keyframes);
+  for (int i = 0; i < 3; ++i) believed = with_next(believed);
+  ASSERT_LT(num_live(believed.keyframes), num_before + 3) << "one went at least";
+  for (const std::size_t query : {13U, 14U})
+    believed = closed(believed, true_loop(query, 14 - query));
+  EXPECT_EQ(believed.loops.size(), 2U);
+  ASSERT_EQ(believed.doubted_loops.size(), 1U);
+  EXPECT_EQ(believed.doubted_loops[0].cause, kLie);
+  EXPECT_EQ(num_seen_in_both_rooms(believed), 0);
+  EXPECT_LT(rmse_m(believed), 0.1);
+}
+
 }  // namespace
 }  // namespace samewhere::pipeline

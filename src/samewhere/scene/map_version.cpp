@@ -100,11 +100,15 @@ void cull(MapVersion& map, core::KeyframeId id) {
   core::require(std::none_of(map.loops.begin(), map.loops.end(),
                              [&](const LoopEdge& l) { return l.query == id || l.match == id; }),
                 "a keyframe that a loop edge holds is not culled");
-  for (std::size_t slot = 0; slot < keyframe.slots.size(); ++slot) {
-    if (keyframe.slots[slot].is_valid()) forget(map, {keyframe.slots[slot], id});
+  const std::vector<core::LandmarkId> shown = keyframe.slots;
+  for (const auto& landmark : shown) {
+    if (landmark.is_valid()) forget(map, {landmark, id});
   }
   keyframe.culled_parent_from_keyframe =
       inverse(world_from_body(map, keyframe.odometry->parent)) * keyframe.world_from_body;
+  for (const auto& landmark : shown) {
+    if (landmark.is_valid()) hang_on_observer(map, map.landmarks.edit(landmark.index()));
+  }
   for (std::size_t i = id.index() + 1; i < map.keyframes.size(); ++i) {
     const Keyframe& child = map.keyframes[i];
     if (is_live(child) && child.odometry && child.odometry->parent == id)

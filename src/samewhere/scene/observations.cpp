@@ -28,4 +28,14 @@ void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& 
               landmark.descriptor.size());
 }
 
+void hang_on_observer(const MapVersion& map, Landmark& landmark) {
+  if (is_live(map.at(landmark.anchor)) || landmark.observations.empty()) return;
+  const core::KeyframeId observer = landmark.observations.front().keyframe;
+  const core::Rigid3 observer_from_anchor =
+      inverse(world_from_body(map, observer)) * world_from_body(map, landmark.anchor);
+  landmark.anchor = observer;
+  landmark.position_in_anchor = observer_from_anchor * landmark.position_in_anchor;
+  landmark.normal_in_anchor = observer_from_anchor.rotation * landmark.normal_in_anchor;
+}
+
 }  // namespace samewhere::scene

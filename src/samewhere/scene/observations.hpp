@@ -16,4 +16,8 @@ core::LandmarkId shown_at(const MapVersion& map, const Observation& observation)
 // direction.
 void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& observation);
 
+// A landmark whose anchor was culled hangs on the first keyframe that sees it from now on, in its
+// place in the world: it moves with those who see it, not with the odometry parent of one who did.
+void hang_on_observer(const MapVersion& map, Landmark& landmark);
+
 }  // namespace samewhere::scene

@@ -28,15 +28,27 @@ void forget_settled(MapVersion& map, std::uint64_t since) {
   }
 }
 
+// Keyframes that were there when it was closed.
+std::size_t num_older(const LoopEdge& loop) { return std::max(loop.query, loop.match).index() + 1; }
+
 void forget_refinements(MapVersion& map, const Causes& causes) {
   for (const auto& loop : map.loops) {
     if (!causes.contains(loop.cause)) continue;
     forget_settled(map, loop.closed_at);
-    for (std::size_t i = 0; i <= std::max(loop.query, loop.match).index(); ++i) {
+    for (std::size_t i = 0; i < num_older(loop); ++i) {
       const Keyframe& keyframe = map.keyframes[i];
       if (keyframe.refined_parent_from_keyframe && keyframe.refined_at >= loop.closed_at)
         map.keyframes.edit(i).refined_parent_from_keyframe.reset();
     }
+  }
+}
+
+// Of those that were culled while the loop was there the way to the parent may be what it had bent.
+void let_culled_stand_as_measured(MapVersion& map, std::size_t num_keyframes) {
+  for (std::size_t i = 0; i < num_keyframes; ++i) {
+    if (is_live(map.keyframes[i])) continue;
+    Keyframe& keyframe = map.keyframes.edit(i);
+    keyframe.culled_parent_from_keyframe = parent_from_keyframe(keyframe);
   }
 }
 
@@ -82,6 +94,7 @@ void revive(MapVersion& map, core::LandmarkId id) {
   });
   for (const auto& o : landmark.observations) set_slot(map, o, id);
   landmark.is_culled = landmark.observations.empty();
+  hang_on_observer(map, landmark);
 }
 
 // Whoever shows there does so no longer.
@@ -108,6 +121,7 @@ void take_back(MapVersion& map, const Merge& made) {
   }
   from.merged_into = core::LandmarkId{};
   from.is_culled = from.observations.empty();
+  hang_on_observer(map, from);
 }
 
 void take_back(MapVersion& map, const std::vector<bool>& is_taken_back) {
@@ -130,11 +144,16 @@ void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
   for (const auto& id : unmerged)
     core::require(map.at(id).merged_into.is_valid(), "a landmark that is unmerged was merged");
   const Causes causes(loops.begin(), loops.end());
+  std::size_t num_older_keyframes = 0;
+  for (const auto& loop : map.loops)
+    if (causes.contains(loop.cause))
+      num_older_keyframes = std::max(num_older_keyframes, num_older(loop));
   forget_refinements(map, causes);
   remove_edges(map, causes);
   if (!causes.empty())
     for (std::size_t i = 0; i < map.landmarks.size(); ++i) remove_observations(map, causes, i);
   take_back(map, merges_to_take_back(map, causes, unmerged));
+  let_culled_stand_as_measured(map, num_older_keyframes);  // last: landmarks hung on them till now
 }
 
 }  // namespace samewhere::scene

@@ -15,9 +15,9 @@ namespace samewhere::scene {
 //   So the landmarks that these merges touched are one exactly where they were before.
 // - Who comes back shows again wherever it showed when it was merged, but in keyframes that were
 //   culled since. What it had gone into, if culled since, comes back with what is still free.
-// - Keyframes older than the loop that a bundle refined since are where odometry measured them,
-//   relative to their parents: the loop had bent what held that bundle. What a full bundle settled
-//   since is forgotten of all keyframes.
+// - Keyframes older than the loop that a bundle refined since, and culled ones, are where odometry
+//   (or a bundle before the loop) measured them, relative to their parents: the loop had bent what
+//   held that bundle. What a full bundle settled since is forgotten of all keyframes.
 //
 // Poses and positions stay. Throws ContractError for a cause of no loop edge of the map and for a
 // landmark that is not merged.
