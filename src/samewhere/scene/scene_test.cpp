@@ -203,6 +203,46 @@ TEST_F(TwoKeyframes, ACulledKeyframeHangsOnItsParentAndHandsItsOdometryOn) {
   EXPECT_THROW(apply(culled, move), core::ContractError) << "not by itself";
 }
 
+TEST_F(TwoKeyframes, WhatAnotherStillSeesHangsOnItWhenItsAnchorIsCulled) {
+  MapVersion three = with_third(map_, view_);
+  Edit seen;
+  seen.landmarks = {landmark(1, 1, seen_in_second_)};
+  seen.landmarks[0].normal_in_anchor = -Eigen::Vector3d::UnitZ();
+  seen.sightings = {{core::LandmarkId(1), {core::KeyframeId(1), 0}},
+                    {core::LandmarkId(1), {core::KeyframeId(2), 0}}};
+  three = apply(three, seen);
+  Edit cull;
+  cull.culled_keyframes = {core::KeyframeId(1)};
+  const MapVersion culled = apply(three, cull);
+  EXPECT_EQ(culled.landmarks[1].anchor, core::KeyframeId(2));
+  const Eigen::Vector3d before = position_in_world(three, three.landmarks[1]);
+  EXPECT_LT((position_in_world(culled, culled.landmarks[1]) - before).norm(), 1e-12);
+
+  const core::Rigid3 aside{core::exp_so3({0.0, 0.4, 0.0}), {0.0, 3.0, 0.0}};
+  Edit move;
+  move.pose_changes = {{core::KeyframeId(2), aside}};
+  const MapVersion moved = apply(culled, move);
+  EXPECT_LT((position_in_world(moved, moved.landmarks[1]) - aside * before).norm(), 1e-12)
+      << "with who sees it, not with the parent of who saw it";
+}
+
+TEST_F(TwoKeyframes, WhoWasCulledWhileALoopBentTheMapStandsStraightWhenItIsTakenBack) {
+  const core::CandidateId cause(5);
+  Edit close;
+  close.loops = {{core::KeyframeId(2), core::KeyframeId(0), {}}};
+  close.loops[0].cause = cause;
+  close.pose_changes = {{core::KeyframeId(1), {Eigen::Quaterniond::Identity(), {9.0, 0.0, 0.0}}}};
+  MapVersion map = apply(with_third(map_, view_), close);
+  Edit cull;
+  cull.culled_keyframes = {core::KeyframeId(1)};
+  map = apply(map, cull);
+  ASSERT_NEAR(world_from_body(map, core::KeyframeId(1)).translation.x(), 9.5, 1e-12);
+  Edit take_back;
+  take_back.withdrawn_loops = {cause};
+  map = apply(map, take_back);
+  EXPECT_NEAR(world_from_body(map, core::KeyframeId(1)).translation.x(), 0.5, 1e-12);
+}
+
 TEST_F(TwoKeyframes, ARefinementOutlivesTheKeyframeItWentThrough) {
   const core::Rigid3 refined{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.4}};
   Edit refine;
