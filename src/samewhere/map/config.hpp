@@ -27,6 +27,7 @@ struct Config {
   int full_bundle_after_keyframes = 5;
   int full_bundle_pace = 4000;
   int cull_after_keyframes = 3;
+  int forget_after_keyframes = 10;
   double min_found_ratio = 0.25;
   double redundant_ratio = 0.7;
   int visible_after_frames = 2;
@@ -134,6 +135,10 @@ inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "keyframes after which a new landmark must have proved itself",
          .min = 1,
          .max = 100});
+  visit("forget_after_keyframes", config.forget_after_keyframes,
+        {.help = "keyframes after which a landmark goes that no second one saw",
+         .min = 1,
+         .max = 10000});
   visit("min_found_ratio", config.min_found_ratio,
         {.help = "a landmark goes if fewer of the keyframes that should see it do",
          .min = 0.0,

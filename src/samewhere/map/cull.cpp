@@ -15,7 +15,16 @@ using scene::MapVersion;
 constexpr int kMinExpected = 2;  // keyframes that should see a landmark before it is blamed
 constexpr int kEnoughObservers = 3;
 
-bool is_unsupported(const Landmark& landmark) { return landmark.observations.size() == 1; }
+bool has_depth(const MapVersion& map, const scene::Observation& observation) {
+  return map.at(observation.keyframe)
+             .view.features->depth_m[static_cast<std::size_t>(observation.slot)] > 0.0F;
+}
+
+bool is_seen_once(const Landmark& landmark) { return landmark.observations.size() == 1; }
+
+bool is_unsupported(const MapVersion& map, const Landmark& landmark) {
+  return is_seen_once(landmark) && !has_depth(map, landmark.observations[0]);
+}
 
 // Of the keyframes after its anchor, too few of those that should see the landmark do.
 bool is_missed(const MapVersion& map, const Landmark& landmark, const Config& config,
@@ -33,11 +42,21 @@ bool is_missed(const MapVersion& map, const Landmark& landmark, const Config& co
   return num_expected >= kMinExpected && num_found < config.min_found_ratio * num_expected;
 }
 
-void cull_landmarks(const MapVersion& map, const Keyframe& anchor, scene::Edit& edit,
-                    const Config& config, const features::Config& features) {
-  for (const auto& id : anchor.slots) {
-    if (!id.is_valid() || map.at(id).anchor != anchor.id) continue;
-    if (is_unsupported(map.at(id)) || is_missed(map, map.at(id), config, features))
+// The keyframe that was added so many before the newest; nothing if it is gone or never was.
+const Keyframe* of_age(const MapVersion& map, KeyframeId newest, int num_keyframes) {
+  const auto age = static_cast<std::size_t>(num_keyframes);
+  if (newest.index() < age) return nullptr;
+  const Keyframe& keyframe = map.keyframes[newest.index() - age];
+  return is_live(keyframe) ? &keyframe : nullptr;
+}
+
+// Those that hang on the keyframe of this age and are no good.
+template <class IsBad>
+void cull_landmarks(const MapVersion& map, const Keyframe* anchor, scene::Edit& edit,
+                    const IsBad& is_bad) {
+  if (anchor == nullptr) return;
+  for (const auto& id : anchor->slots) {
+    if (id.is_valid() && map.at(id).anchor == anchor->id && is_bad(map.at(id)))
       edit.culled_landmarks.push_back(id);
   }
 }
@@ -98,11 +117,11 @@ std::optional<KeyframeId> most_redundant(const MapVersion& map, KeyframeId newes
 scene::Edit cull_around(const MapVersion& map, KeyframeId newest, const Config& config,
                         const features::Config& features) {
   scene::Edit edit;
-  const auto age = static_cast<std::size_t>(config.cull_after_keyframes);
-  if (newest.index() >= age) {
-    const Keyframe& anchor = map.keyframes[newest.index() - age];
-    if (is_live(anchor)) cull_landmarks(map, anchor, edit, config, features);
-  }
+  cull_landmarks(
+      map, of_age(map, newest, config.cull_after_keyframes), edit, [&](const Landmark& landmark) {
+        return is_unsupported(map, landmark) || is_missed(map, landmark, config, features);
+      });
+  cull_landmarks(map, of_age(map, newest, config.forget_after_keyframes), edit, is_seen_once);
   if (const auto keyframe = most_redundant(map, newest, config))
     edit.culled_keyframes.push_back(*keyframe);
   return edit;

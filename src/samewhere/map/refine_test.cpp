@@ -172,11 +172,10 @@ TEST(Cull, ALandmarkThatNobodyFindsAgainGoes) {
   }
   const scene::Edit edit = cull_around(map, newest(map).id, {}, {});
   EXPECT_GT(edit.culled_landmarks.size(), 2U);
-  for (const auto& id : edit.culled_landmarks)
-    EXPECT_TRUE(is_lost(id) || map.at(id).observations.size() == 1) << "landmark " << id;
+  for (const auto& id : edit.culled_landmarks) EXPECT_TRUE(is_lost(id)) << "landmark " << id;
 }
 
-TEST(Cull, OfWhatIsOutOfSightOnlyThatStaysWhichTwoHaveSeen) {
+TEST(Cull, WhatIsOutOfSightStaysUntilItIsForgottenUnlessTwoHaveSeenIt) {
   const features::TestWorld world = features::test_world(5, 2000);
   scene::MapVersion map = test_map(world, 2);
   const auto is_lost = [&](core::LandmarkId id) { return is_of_second_fifth(map, id); };
@@ -186,7 +185,9 @@ TEST(Cull, OfWhatIsOutOfSightOnlyThatStaysWhichTwoHaveSeen) {
     const features::View view = features::test_view(world, i, pose);
     map = apply(map, add_keyframe(map, test_tracked(map, view, pose, is_lost)));
   }
-  const scene::Edit edit = cull_around(map, newest(map).id, {}, {});
+  EXPECT_TRUE(cull_around(map, newest(map).id, {}, {}).culled_landmarks.empty());
+  const Config soon{.cull_after_keyframes = 2, .forget_after_keyframes = 3};
+  const scene::Edit edit = cull_around(map, newest(map).id, soon, {});
   const std::set<core::LandmarkId> gone(edit.culled_landmarks.begin(), edit.culled_landmarks.end());
   int num_seen_by_two = 0;
   for (const auto& id : map.keyframes[1].slots) {
