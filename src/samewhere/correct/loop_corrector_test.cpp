@@ -52,8 +52,8 @@ Walk square_walk(double turn_error_rad, std::optional<double> creep = {}) {
 double worst_error_m(const Walk& walk, const scene::MapVersion& map) {
   double worst = 0.0;
   for (std::size_t i = 0; i < walk.truth.size(); ++i) {
-    worst = std::max(
-        worst, (map.keyframes[i].world_from_body.translation - walk.truth[i].translation).norm());
+    const core::Rigid3 pose = world_from_body(map, map.keyframes[i].id);
+    worst = std::max(worst, (pose.translation - walk.truth[i].translation).norm());
   }
   return worst;
 }
@@ -223,6 +223,20 @@ TEST(CloseLoop, ALoopToAKeyframeThatIsNotThereIsABrokenPromise) {
   scene::LoopEdge loop = true_loop(walk, 40, 0);
   loop.query = core::KeyframeId(99);
   EXPECT_THROW(close_loop(walk.map, loop, {}), core::ContractError);
+}
+
+TEST(CloseLoop, ALoopOfACulledKeyframeIsCarriedOverToWhoHoldsIt) {
+  const Walk walk = square_walk(0.01);
+  scene::Edit cull;
+  cull.culled_keyframes = {core::KeyframeId(40)};
+  const scene::MapVersion culled = apply(walk.map, cull);
+  const scene::LoopEdge loop = true_loop(walk, 40, 0);
+  EXPECT_THROW(close_loop(culled, loop, {}), core::ContractError);
+  const std::optional<scene::LoopEdge> carried = between_holders(culled, loop);
+  ASSERT_TRUE(carried.has_value());
+  EXPECT_EQ(carried->query, core::KeyframeId(39));
+  const scene::MapVersion closed = apply(culled, close_loop(culled, *carried, {}).edit);
+  EXPECT_LT(worst_error_m(walk, closed), 0.25 * worst_error_m(walk, walk.map));
 }
 
 }  // namespace

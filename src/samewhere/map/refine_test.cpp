@@ -200,26 +200,40 @@ TEST(Cull, WhatIsOutOfSightStaysUntilItIsForgottenUnlessTwoHaveSeenIt) {
   EXPECT_FALSE(gone.empty());
 }
 
-// The camera sways before one wall for as long as it likes; tracking misses a third of what it
-// sees.
-TEST(Cull, WhoStaysWhereHeIsHasAMapThatDoesNotGrow) {
-  const features::TestWorld world = features::test_world(6, 2000);
-  scene::MapVersion map = test_map(world, 1);
-  const auto sway = [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      const auto is_overlooked = [&](core::LandmarkId id) { return (id.index() + i) % 3 == 0; };
-      const core::Rigid3 pose = test_walk(static_cast<int>(i % 4));
-      const features::View view = features::test_view(world, static_cast<int>(i), pose);
-      map = apply(map, add_keyframe(map, test_tracked(map, view, pose, is_overlooked)));
-      for (const auto& edit : fuse_around(map, newest(map).id, {}, {})) map = apply(map, edit);
-      map = apply(map, cull_around(map, newest(map).id, {}, {}));
+// Keyframes and landmarks of a camera that sways before one wall; in each view a third of what is
+// seen are things that are never seen again.
+std::pair<std::size_t, std::size_t> size_after_swaying(int num_views, const Config& config) {
+  const features::TestWorld wall = features::test_world(6, 1500);
+  scene::MapVersion map;
+  for (int i = 0; i < num_views; ++i) {
+    features::TestWorld world = features::test_world(100 + static_cast<std::uint64_t>(i), 750);
+    world.points.insert(world.points.begin(), wall.points.begin(), wall.points.end());
+    world.descriptors.insert(world.descriptors.begin(), wall.descriptors.begin(),
+                             wall.descriptors.end());
+    const core::Rigid3 pose = test_walk(i % 4);
+    const features::View view = features::test_view(world, i, pose);
+    if (i == 0) {
+      map = apply(map, start_map(map, view, pose));
+      continue;
     }
-    return std::pair(num_live(map.keyframes), num_live(map.landmarks));
-  };
-  const auto [num_keyframes, num_landmarks] = sway(1, 15);
-  const auto [num_later, num_landmarks_later] = sway(15, 45);
+    map = apply(map, add_keyframe(map, test_tracked(map, view, pose, kNone)));
+    for (const auto& edit : fuse_around(map, newest(map).id, config, {})) map = apply(map, edit);
+    map = apply(map, cull_around(map, newest(map).id, config, {}));
+  }
+  return {num_live(map.keyframes), num_live(map.landmarks)};
+}
+
+// Nothing is blamed for not being found: that would hide what forgetting does.
+TEST(Cull, WhoStaysWhereHeIsHasAMapThatHardlyGrows) {
+  const Config config{.min_found_ratio = 0.0};
+  const auto [num_keyframes, num_landmarks] = size_after_swaying(20, config);
+  const auto [num_later, num_landmarks_later] = size_after_swaying(60, config);
   EXPECT_LE(num_later, num_keyframes + 2);
   EXPECT_LE(num_landmarks_later, num_landmarks + num_landmarks / 10);
+  const Config forgetting_nothing{.forget_after_keyframes = 10000, .min_found_ratio = 0.0};
+  const auto [num_kept, num_landmarks_kept] = size_after_swaying(60, forgetting_nothing);
+  EXPECT_GT(num_kept, 2 * num_later);
+  EXPECT_GT(num_landmarks_kept, 2 * num_landmarks_later);
 }
 
 TEST(Cull, OfManyKeyframesOfOneViewOneGoesButNeverTheFirstOrOneOfALoop) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include <samewhere/scene/observations.hpp>
@@ -29,13 +30,19 @@ void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& 
 }
 
 void hang_on_observer(const MapVersion& map, Landmark& landmark) {
-  if (is_live(map.at(landmark.anchor)) || landmark.observations.empty()) return;
-  const core::KeyframeId observer = landmark.observations.front().keyframe;
-  const core::Rigid3 observer_from_anchor =
-      inverse(world_from_body(map, observer)) * world_from_body(map, landmark.anchor);
-  landmark.anchor = observer;
-  landmark.position_in_anchor = observer_from_anchor * landmark.position_in_anchor;
-  landmark.normal_in_anchor = observer_from_anchor.rotation * landmark.normal_in_anchor;
+  const auto& seen = landmark.observations;
+  const bool is_held = std::any_of(seen.begin(), seen.end(), [&](const Observation& o) {
+    return o.keyframe == landmark.anchor;
+  });
+  if (!is_held && !seen.empty()) hang_on(map, landmark, seen.front().keyframe);
+}
+
+void hang_on(const MapVersion& map, Landmark& landmark, core::KeyframeId keyframe) {
+  const core::Rigid3 keyframe_from_anchor =
+      inverse(world_from_body(map, keyframe)) * world_from_body(map, landmark.anchor);
+  landmark.anchor = keyframe;
+  landmark.position_in_anchor = keyframe_from_anchor * landmark.position_in_anchor;
+  landmark.normal_in_anchor = keyframe_from_anchor.rotation * landmark.normal_in_anchor;
 }
 
 }  // namespace samewhere::scene

@@ -16,8 +16,12 @@ core::LandmarkId shown_at(const MapVersion& map, const Observation& observation)
 // direction.
 void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& observation);
 
-// A landmark whose anchor was culled hangs on the first keyframe that sees it from now on, in its
-// place in the world: it moves with those who see it, not with the odometry parent of one who did.
+// A landmark that its anchor sees no longer hangs from now on on a keyframe that does, in its place
+// in the world: it moves with those who see it. To be called when a keyframe or a loop takes
+// observations along, and before poses move; not for what a bundle finds wrong: the keyframe that
+// brought it still answers for it.
 void hang_on_observer(const MapVersion& map, Landmark& landmark);
+// The same on this keyframe.
+void hang_on(const MapVersion& map, Landmark& landmark, core::KeyframeId keyframe);
 
 }  // namespace samewhere::scene

@@ -207,16 +207,22 @@ TEST_F(TwoKeyframes, WhatAnotherStillSeesHangsOnItWhenItsAnchorIsCulled) {
   MapVersion three = with_third(map_, view_);
   Edit seen;
   seen.landmarks = {landmark(1, 1, seen_in_second_)};
-  seen.landmarks[0].normal_in_anchor = -Eigen::Vector3d::UnitZ();
   seen.sightings = {{core::LandmarkId(1), {core::KeyframeId(1), 0}},
                     {core::LandmarkId(1), {core::KeyframeId(2), 0}}};
+  seen.pose_changes = {
+      {core::KeyframeId(2), {core::exp_so3({0.0, 0.2, 0.0}), Eigen::Vector3d::Zero()}}};
   three = apply(three, seen);
+  const auto normal_in_world = [](const MapVersion& map) -> Eigen::Vector3d {
+    const Landmark& landmark = map.landmarks[1];
+    return world_from_body(map, landmark.anchor).rotation * landmark.normal_in_anchor;
+  };
   Edit cull;
   cull.culled_keyframes = {core::KeyframeId(1)};
   const MapVersion culled = apply(three, cull);
   EXPECT_EQ(culled.landmarks[1].anchor, core::KeyframeId(2));
   const Eigen::Vector3d before = position_in_world(three, three.landmarks[1]);
   EXPECT_LT((position_in_world(culled, culled.landmarks[1]) - before).norm(), 1e-12);
+  EXPECT_LT((normal_in_world(culled) - normal_in_world(three)).norm(), 1e-12);
 
   const core::Rigid3 aside{core::exp_so3({0.0, 0.4, 0.0}), {0.0, 3.0, 0.0}};
   Edit move;

@@ -28,7 +28,7 @@ void forget_settled(MapVersion& map, std::uint64_t since) {
   }
 }
 
-// Keyframes that were there when it was closed.
+// Keyframes up to the younger one that it joins.
 std::size_t num_older(const LoopEdge& loop) { return std::max(loop.query, loop.match).index() + 1; }
 
 void forget_refinements(MapVersion& map, const Causes& causes) {
@@ -43,7 +43,23 @@ void forget_refinements(MapVersion& map, const Causes& causes) {
   }
 }
 
+// What was merged may be taken apart one day, and should then be where it was: it hangs on who may
+// still see it, and not on keyframes that are culled, whose poses change below.
+void hang_merged_on_the_living(MapVersion& map) {
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    const Landmark& known = map.landmarks[i];
+    if (!known.merged_into.is_valid() || is_live(map.at(known.anchor))) continue;
+    const auto living =
+        std::find_if(known.observations.begin(), known.observations.end(),
+                     [&](const Observation& o) { return is_live(map.at(o.keyframe)); });
+    if (living == known.observations.end()) continue;
+    const core::KeyframeId observer = living->keyframe;
+    hang_on(map, map.landmarks.edit(i), observer);
+  }
+}
+
 // Of those that were culled while the loop was there the way to the parent may be what it had bent.
+// Nobody wrote down when they were: those culled before stand as measured, too.
 void let_culled_stand_as_measured(MapVersion& map, std::size_t num_keyframes) {
   for (std::size_t i = 0; i < num_keyframes; ++i) {
     if (is_live(map.keyframes[i])) continue;
@@ -65,6 +81,7 @@ void remove_observations(MapVersion& map, const Causes& causes, std::size_t land
   if (landmark.observations.empty()) {
     landmark.is_culled = landmark.is_culled || was_live;
   } else if (was_live) {
+    hang_on_observer(map, landmark);
     look_as_seen(map, landmark, landmark.observations.back());
   }
 }
@@ -105,6 +122,7 @@ void free_slot(MapVersion& map, const Observation& observation) {
   std::erase_if(landmark.observations,
                 [&](const Observation& o) { return o.keyframe == observation.keyframe; });
   landmark.is_culled = landmark.observations.empty();
+  hang_on_observer(map, landmark);
   set_slot(map, observation, core::LandmarkId{});
 }
 
@@ -153,7 +171,9 @@ void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
   if (!causes.empty())
     for (std::size_t i = 0; i < map.landmarks.size(); ++i) remove_observations(map, causes, i);
   take_back(map, merges_to_take_back(map, causes, unmerged));
-  let_culled_stand_as_measured(map, num_older_keyframes);  // last: landmarks hung on them till now
+  if (causes.empty()) return;
+  hang_merged_on_the_living(map);
+  let_culled_stand_as_measured(map, num_older_keyframes);
 }
 
 }  // namespace samewhere::scene

@@ -19,8 +19,8 @@ namespace samewhere::scene {
 //   (or a bundle before the loop) measured them, relative to their parents: the loop had bent what
 //   held that bundle. What a full bundle settled since is forgotten of all keyframes.
 //
-// Poses and positions stay. Throws ContractError for a cause of no loop edge of the map and for a
-// landmark that is not merged.
+// Poses of live keyframes and positions in the world stay. Throws ContractError for a cause of no
+// loop edge of the map and for a landmark that is not merged.
 void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
               const std::vector<core::LandmarkId>& unmerged);
 

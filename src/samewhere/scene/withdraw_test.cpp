@@ -52,6 +52,7 @@ void expect_slots_and_observations_agree(const MapVersion& map) {
   for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
     if (!is_live(map.landmarks[i])) continue;
     num_observations += map.landmarks[i].observations.size();
+    EXPECT_TRUE(is_live(map.at(map.landmarks[i].anchor))) << "landmark " << i;
     for (const auto& o : map.landmarks[i].observations) {
       const Keyframe& keyframe = map.at(o.keyframe);
       EXPECT_TRUE(is_live(keyframe));
@@ -232,6 +233,33 @@ TEST_F(Withdrawing, AMergedLandmarkComesBackAloneWithItsLaterMerges) {
   EXPECT_TRUE(partition_of(apply(map_, unmerge)) == with_a_merged) << "earlier ones stay";
   unmerge.unmerged_landmarks = {a};
   EXPECT_TRUE(partition_of(apply(map_, unmerge)) == partition_of(before)) << "later ones go";
+}
+
+TEST_F(Withdrawing, WhatIsMergedStaysInItsPlaceThoughItsAnchorWasCulledBentByTheLoop) {
+  begin(6);
+  const core::KeyframeId anchor(map_.keyframes.size() - 2);
+  const core::LandmarkId merged = map_.at(anchor).slots[0];
+  Edit seen;
+  seen.sightings = {{merged, {lie_.query, 1}}};
+  map_ = apply(std::move(map_), seen);
+  core::LandmarkId other = any_live();
+  while (other == merged) other = any_live();
+  ASSERT_TRUE(merge(merged, other, {}));
+  Edit edge;
+  edge.loops = {lie_};
+  edge.pose_changes = {{anchor, random_pose(random_)}};
+  map_ = apply(std::move(map_), edge);
+  Edit cull;
+  cull.culled_keyframes = {anchor};
+  map_ = apply(std::move(map_), cull);
+  const Eigen::Vector3d before = position_in_world(map_, map_.at(merged));
+
+  MapVersion after = without_lie();
+  Edit unmerge;
+  unmerge.unmerged_landmarks = {merged};
+  after = apply(std::move(after), unmerge);
+  ASSERT_TRUE(is_live(after.at(merged)));
+  EXPECT_LT((position_in_world(after, after.at(merged)) - before).norm(), 1e-9);
 }
 
 TEST_F(Withdrawing, ItCanBeDoneAfterTheWayThroughAFile) {
