@@ -21,12 +21,6 @@ bool has_loop(const scene::MapVersion& map, core::CandidateId cause) {
                      [&](const scene::LoopEdge& loop) { return loop.cause == cause; });
 }
 
-core::KeyframeId keyframe_of(const scene::MapVersion& map, core::FrameId frame) {
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
-    if (map.keyframes[i].view.frame == frame) return map.keyframes[i].id;
-  throw core::ContractError("promise broken: a candidate is a keyframe");
-}
-
 core::Trajectory keyframe_trajectory(const scene::MapVersion& map) {
   core::Trajectory trajectory;
   for (std::size_t i = 0; i < map.keyframes.size(); ++i)
@@ -72,7 +66,7 @@ void Liar::tell_lie(const pipeline::FindLoops& question, pipeline::LoopAnswer& a
   for (auto& row : answer.rows) {
     const auto* refused = std::get_if<core::Rejection>(&row.verdict);
     if (refused == nullptr || refused->stage != core::Refusal::kOdometry) continue;
-    const core::KeyframeId match = keyframe_of(question.map, row.candidate.match);
+    const core::KeyframeId match = scene::keyframe_of(question.map, row.candidate.match)->id;
     const auto found = refused->evidence.geometry->match_from_query;
     const core::Rigid3 truth = true_match_from_query(question.map, match, question.keyframe);
     const double error_m = (rigid_part(*found).translation - truth.translation).norm();

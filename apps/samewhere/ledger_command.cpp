@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <sstream>
@@ -10,10 +11,12 @@
 #include "commands.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/pipeline/by_hand.hpp>
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
 #include <samewhere/report/funnel.hpp>
+#include <samewhere/report/pair_figure.hpp>
 #include <samewhere/report/table.hpp>
 
 namespace samewhere::app {
@@ -25,6 +28,7 @@ struct LedgerCommand {
   std::string stage;
   int query = -1;
   std::size_t candidate = 0;
+  std::string picture;
   std::vector<std::string> assignments;
 };
 
@@ -89,8 +93,12 @@ std::vector<report::Figure> figures_of(const core::LedgerRow& row) {
              of_geometry(&core::GeometryEvidence::spread_ratio));
   add_figure(figures, "reprojection error", " px",
              of_geometry(&core::GeometryEvidence::reprojection_rmse_px));
-  add_figure(figures, "poses of both views apart", " m",
-             geometry ? geometry->disagreement_m : std::nullopt);
+  const auto apart_m = geometry ? geometry->disagreement_m : std::nullopt;
+  if (apart_m && std::isinf(*apart_m)) {
+    figures.push_back({"poses of both views apart", "one of them finds none"});
+  } else {
+    add_figure(figures, "poses of both views apart", " m", apart_m);
+  }
   const auto& odometry = evidence.odometry;
   add_figure(figures, "moves the camera by", " m",
              odometry ? std::optional(odometry->correction_m) : std::nullopt);
@@ -101,7 +109,11 @@ std::vector<report::Figure> figures_of(const core::LedgerRow& row) {
 
 void show(const LedgerCommand& command) {
   const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
-  print_figures(figures_of(pipeline::row_of(ledger, command.candidate, command.folder)));
+  const core::LedgerRow& row = pipeline::row_of(ledger, command.candidate, command.folder);
+  print_figures(figures_of(row));
+  if (command.picture.empty()) return;
+  core::write_file(command.picture, report::pair_svg(pipeline::pair_of_run(command.folder, row)));
+  fmt::print("{}\n", command.picture);
 }
 
 core::Ledger rows_after(const std::vector<pipeline::ReplayedRow>& replayed) {
@@ -167,6 +179,8 @@ void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
 void add_show(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
   CLI::App* sub = ledger.add_subcommand("show", "All that was measured of one candidate");
   sub->add_option("N", command->candidate, "its number, as `list` prints it")->required();
+  sub->add_option("--picture", command->picture,
+                  "SVG file to write: both views side by side and what matches");
   sub->callback([command] { show(*command); });
 }
 
@@ -205,7 +219,7 @@ void add_ledger_command(CLI::App& app) {
   sub->footer(
       "Examples:\n"
       "  samewhere ledger runs/demo list --stage odometry\n"
-      "  samewhere ledger runs/demo show 12\n"
+      "  samewhere ledger runs/demo show 12 --picture why.svg\n"
       "  samewhere ledger runs/demo replay --set verify.min_inliers=80\n"
       "  samewhere ledger runs/demo reject 12");
 }

@@ -66,6 +66,14 @@ TEST_F(LedgerCommand, ReplaysWithOtherThresholds) {
   EXPECT_EQ(run("replay").exit_code, 2);
 }
 
+TEST_F(LedgerCommand, APictureNeedsAMap) {
+  const Outcome shown = run("show 1 --picture why.svg");
+  EXPECT_EQ(shown.exit_code, 2);
+  EXPECT_THAT(shown.err, HasSubstr("map.sw: no such file"));
+  EXPECT_EQ(std::count(shown.err.begin(), shown.err.end(), '\n'), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_.root() / "why.svg"));
+}
+
 TEST_F(LedgerCommand, AnotherWordOnALoopNeedsAMap) {
   for (const char* word : {"reject 0", "force 1"}) {
     const Outcome without_map = run(word);

@@ -83,6 +83,10 @@ TEST_F(MapOfARun, IsExportedAsTheRunWroteItself) {
       run("run 'twin:office-loop?seed=2' --set twin.num_frames=12 --out " + quoted(path("a")));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_THAT(core::read_file(path("a/timing.json")), HasSubstr("\"save\""));
+  scene::MapFile file = scene::MapFile::open(path("a/map.sw"));
+  const scene::MapVersion kept = file.load().map;
+  for (std::size_t i = 0; i < kept.keyframes.size(); ++i)
+    EXPECT_TRUE(file.thumbnail(kept.keyframes[i].view.frame)) << "picture of keyframe " << i;
   const std::string map = "map " + quoted(path("a/map.sw"));
   const Outcome info = run(map + " info");
   EXPECT_EQ(info.exit_code, 0) << info.err;

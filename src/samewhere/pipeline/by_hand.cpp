@@ -71,8 +71,7 @@ void require_not_lost(const core::LedgerRow& row) {
 
 const scene::Keyframe& keyframe_of(const MapVersion& map, core::FrameId frame,
                                    const core::LedgerRow& row) {
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
-    if (map.keyframes[i].view.frame == frame) return map.keyframes[i];
+  if (const scene::Keyframe* keyframe = scene::keyframe_of(map, frame)) return *keyframe;
   throw InputError(
       fmt::format("{}: frame {} is no keyframe of the map", name_of(row), frame.index()));
 }

@@ -128,7 +128,7 @@ class ByHandInAFolder : public ByHandInRooms {
  protected:
   ByHandInAFolder() {
     map_ = with_next(with_next(map_));
-    scene::MapFile::create(folder_.root() / "map.sw", {}).commit(map_, {.frames = frames()});
+    scene::MapFile::create(map_path(), {}).commit(map_, {.frames = frames()});
     folder_.write("config.yaml", "seed: 3\n");
     folder_.write("loops.json", report::loops_json({row_of(true_loop(13, 1), 0)}));
     folder_.write("frames.csv", frames_csv(std::vector<core::StampedPose>(map_.keyframes.size())));
@@ -159,17 +159,18 @@ class ByHandInAFolder : public ByHandInRooms {
 
   // What the files say of the map that is stored by now.
   void expect_files_of_map() const {
-    const scene::StoredMap stored = scene::MapFile::open(folder_.root() / "map.sw").load();
+    const scene::StoredMap stored = scene::MapFile::open(map_path()).load();
     const core::Trajectory trajectory = trajectory_of(stored.map, stored.extras.frames);
     EXPECT_TRUE(text_of("trajectory.tum") == core::tum_text(trajectory));
     EXPECT_TRUE(text_of("frames.csv") == frames_csv(trajectory));
     EXPECT_TRUE(text_of("map.ply") == report::ply_bytes(points_of(stored.map)));
   }
 
+  std::filesystem::path map_path() const { return folder_.root() / "map.sw"; }
   std::string text_of(const char* name) const { return core::read_file(folder_.root() / name); }
 
   std::size_t num_stored_loops() const {
-    return scene::MapFile::open(folder_.root() / "map.sw").load().map.loops.size();
+    return scene::MapFile::open(map_path()).load().map.loops.size();
   }
 
   std::string why_not_changed(std::size_t candidate, Word word) const {
@@ -183,6 +184,34 @@ class ByHandInAFolder : public ByHandInRooms {
 
   input::TestFolder folder_;
 };
+
+TEST_F(ByHandInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
+  const core::LedgerRow row = ledger_of_run(folder_.root())[0];
+  const auto why_not_shown = [&] {
+    try {
+      pair_of_run(folder_.root(), row);
+    } catch (const core::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was said");
+  };
+  EXPECT_THAT(why_not_shown(), HasSubstr("map.sw: has no picture of frame 13"));
+  {
+    scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
+    file.load();
+    file.commit(map_, {.thumbnails = {{row.candidate.query, "q"}, {row.candidate.match, "m"}}});
+  }
+  const report::PairRecord pair = pair_of_run(folder_.root(), row);
+  EXPECT_EQ(pair.query.jpeg + pair.match.jpeg, "qm");
+  EXPECT_EQ(pair.query.image_size_px, keyframe_of(map_, row.candidate.query)->view.image_size_px);
+  EXPECT_GT(pair.matches_px.size(), 20U);
+  core::LedgerRow lost = row;
+  lost.candidate.is_lost = true;
+  EXPECT_THROW(pair_of_run(folder_.root(), lost), core::InputError);
+  core::LedgerRow of_no_keyframe = row;
+  of_no_keyframe.candidate.match = core::FrameId(999);
+  EXPECT_THROW(pair_of_run(folder_.root(), of_no_keyframe), core::InputError);
+}
 
 TEST_F(ByHandInAFolder, ForcingAndRejectingAreWrittenDown) {
   const ChangedRun forced = change_run(folder_.root(), 0, Word::kForce, {});
@@ -214,7 +243,7 @@ TEST_F(ByHandInAFolder, WhatCannotBeDoneChangesNothing) {
 }
 
 TEST_F(ByHandInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
-  scene::MapFile file = scene::MapFile::open(folder_.root() / "map.sw", scene::MapAccess::kExtend);
+  scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
   MapVersion map = file.load().map;
   scene::Edit edit =
       map::start_map(map, features::test_view(world_, 0, map::test_walk(3)), core::Rigid3{});

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include <samewhere/pipeline/loop_closing.hpp>
+#include <samewhere/report/jpeg.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/measure_rival.hpp>
@@ -108,6 +109,10 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   const features::View& view = map.at(question.keyframe).view;
   keyframe_of_[view.frame] = question.keyframe;
   LoopAnswer answer;
+  {
+    const core::ScopedTimer timer(timings_, "thumbnail");
+    answer.thumbnail = {view.frame, report::jpeg_bytes(question.image, report::kThumbnailWidth_px)};
+  }
   if (!config_.close_loops) {  // who is lost is found all the same
     answer.descriptor = detector_.describe(view.frame, question.image);
     detector_.remember(*answer.descriptor, view);

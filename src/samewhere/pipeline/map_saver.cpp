@@ -51,7 +51,10 @@ MapSaver::MapSaver(scene::MapFile file) : file_(std::move(file)) {}
 
 void MapSaver::save(const scene::MapVersion& map, const MapNews& news) {
   if (error_) return;
-  scene::MapExtras extras{.frames = news.frames, .descriptors = news.descriptors, .ledger = {}};
+  scene::MapExtras extras{.frames = news.frames,
+                          .descriptors = news.descriptors,
+                          .ledger = {},
+                          .thumbnails = news.thumbnails};
   for (const auto& row : news.rows) extras.ledger.push_back(report::ledger_row_json(row));
   try {
     if (!file_) {

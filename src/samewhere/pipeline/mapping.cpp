@@ -121,6 +121,7 @@ bool Mapping::hear_loops(int max_unheard) {
 
 void Mapping::note(const LoopAnswer& answer) {
   if (answer.descriptor) news_.descriptors.push_back(*answer.descriptor);
+  if (answer.thumbnail) news_.thumbnails.push_back(*answer.thumbnail);
   news_.rows.insert(news_.rows.end(), answer.rows.begin(), answer.rows.end());
   for (const auto& row : answer.rows)
     if (core::is_loop(row.verdict)) accepted_.insert_or_assign(row.candidate.id, row);

@@ -13,6 +13,7 @@
 #include <samewhere/core/link.hpp>
 #include <samewhere/map/local_bundle.hpp>
 #include <samewhere/map/mapper.hpp>
+#include <samewhere/scene/map_file.hpp>
 #include <samewhere/scene/map_version.hpp>
 
 // What the stages of SLAM say to each other. Tracking asks mapping, mapping asks loop closing and
@@ -86,6 +87,7 @@ struct LoopAnswer {
   std::vector<Place> places;                   // to FindPlace
   std::optional<core::Descriptor> descriptor;  // of a view that is remembered from now on
   core::Ledger rows;                           // of all candidates that were judged
+  std::optional<scene::Thumbnail> thumbnail;   // of the keyframe
 };
 
 // --- Mapping to whoever bundles the whole map beside everything else; answered with what it found
@@ -104,6 +106,7 @@ struct MapNews {
   std::vector<core::FramePose> frames;
   std::vector<core::Descriptor> descriptors;
   core::Ledger rows;
+  std::vector<scene::Thumbnail> thumbnails;
 };
 
 // Called by mapping, in its thread, once per keyframe and at the end, if there is a map.

@@ -131,6 +131,9 @@ class MappedSlam {
 
   const Slam& slam() const { return *slam_; }
 
+  // Of keyframes, once it is finished.
+  std::map<core::FrameId, std::string> take_thumbnails() { return std::move(thumbnails_); }
+
   void feed(core::Frame& frame) {
     frame.id = core::FrameId(frame.id.index(), slam_->session());
     if (known_) take_known(*frame.rig);
@@ -149,6 +152,7 @@ class MappedSlam {
  private:
   // Called in mapping's thread.
   void keep(const scene::MapVersion& map, const MapNews& news) {
+    for (const auto& thumbnail : news.thumbnails) thumbnails_[thumbnail.frame] = thumbnail.jpeg;
     if (saver_) saver_->save(map, news);
   }
 
@@ -163,7 +167,8 @@ class MappedSlam {
   MapPlan plan_;
   std::optional<scene::MapFile> known_;  // until the first frame
   std::optional<MapSaver> saver_;
-  std::optional<Slam> slam_;  // last: its threads end before what they use
+  std::map<core::FrameId, std::string> thumbnails_;  // written in mapping's thread
+  std::optional<Slam> slam_;                         // last: its threads end before what they use
 };
 
 // The rows about two frames of this run: others speak of a session whose frames are not here.
@@ -175,14 +180,9 @@ core::Ledger ledger_of_session(const Slam& slam) {
   return rows;
 }
 
-// What must be noted while the frame is at hand.
-void note_frame(const Slam& slam, const core::Frame& frame, report::RunRecord& record) {
-  if (!record.first_pose_s && slam.frames().back().is_measured) {
+void note_first_pose(const Slam& slam, report::RunRecord& record) {
+  if (!record.first_pose_s && slam.frames().back().is_measured)
     record.first_pose_s = core::seconds_since_program_start();
-  }
-  if (slam.is_keyframe(frame.id)) {
-    record.thumbnails[frame.id] = report::jpeg_bytes(frame.images[0], report::kThumbnailWidth_px);
-  }
 }
 
 void record_slam(const Slam& slam, const std::vector<std::string>& names,
@@ -214,12 +214,13 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
     const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
     mapped.feed(*frame);
     names.push_back(frame->name);
-    note_frame(slam, *frame, outcome.record);
+    note_first_pose(slam, outcome.record);
   }
 
   outcome.map_error = mapped.finish();
 
   report::RunRecord& record = outcome.record;
+  record.thumbnails = mapped.take_thumbnails();
   record_slam(slam, names, record);
   SlamFindings findings = findings_of(record, is_monocular);
   for (const int num_edges : kChains) {

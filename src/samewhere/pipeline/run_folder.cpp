@@ -9,11 +9,13 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/evaluate/tower_walk.hpp>
+#include <samewhere/features/match_pair.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
 #include <samewhere/report/loops_read.hpp>
 #include <samewhere/report/timing_json.hpp>
+#include <samewhere/scene/map_file.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -95,6 +97,49 @@ const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
           ? fmt::format("{}: there is no candidate {}, nor any other", folder.string(), candidate)
           : fmt::format("{}: there is no candidate {}; expected 0 to {}", folder.string(),
                         candidate, ledger.size() - 1));
+}
+
+namespace {
+
+const features::View& view_of(const scene::MapVersion& map, core::FrameId frame,
+                              const std::filesystem::path& map_path) {
+  if (const scene::Keyframe* keyframe = keyframe_of(map, frame)) return keyframe->view;
+  throw core::InputError(
+      fmt::format("{}: frame {} is no keyframe of it", map_path.string(), frame.index()));
+}
+
+std::string picture_of(scene::MapFile& file, core::FrameId frame,
+                       const std::filesystem::path& map_path) {
+  if (auto jpeg = file.thumbnail(frame)) return *std::move(jpeg);
+  throw core::InputError(
+      fmt::format("{}: has no picture of frame {}", map_path.string(), frame.index()));
+}
+
+}  // namespace
+
+report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::LedgerRow& row) {
+  const std::filesystem::path path = folder / "map.sw";
+  if (row.candidate.is_lost)
+    throw core::InputError(fmt::format(
+        "{}: candidate {} was thought of when nobody knew where frame {} is; expected one of two "
+        "keyframes, others have no picture",
+        folder.string(), row.candidate.id.index(), row.candidate.query.index()));
+  scene::MapFile file = scene::MapFile::open(path);
+  const scene::MapVersion map = file.load().map;
+  const features::View& query = view_of(map, row.candidate.query, path);
+  const features::View& match = view_of(map, row.candidate.match, path);
+  report::PairRecord pair{row,
+                          {picture_of(file, query.frame, path), query.image_size_px},
+                          {picture_of(file, match.frame, path), match.image_size_px},
+                          {}};
+  const features::Config config = config_of_run(folder).features;
+  // in this order, as the judge does: who is clearly nearest depends on it
+  for (const auto& found :
+       features::match_pair(match.features->descriptors, query.features->descriptors, config)) {
+    pair.matches_px.emplace_back(query.features->raw_px[static_cast<std::size_t>(found.second)],
+                                 match.features->raw_px[static_cast<std::size_t>(found.first)]);
+  }
+  return pair;
 }
 
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {

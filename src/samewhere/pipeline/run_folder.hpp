@@ -6,6 +6,7 @@
 
 #include <samewhere/core/ledger.hpp>
 #include <samewhere/pipeline/config.hpp>
+#include <samewhere/report/pair_figure.hpp>
 #include <samewhere/report/record.hpp>
 #include <samewhere/report/table.hpp>
 
@@ -23,6 +24,12 @@ core::Ledger ledger_of_run(const std::filesystem::path& folder);
 // One of its rows. Throws InputError, naming the folder, if there are not so many.
 const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
                               const std::filesystem::path& folder);
+
+// A candidate of a finished run with both views, from its map. Without depth the judge may have
+// looked at who holds a culled keyframe instead, and counted other matches. Throws InputError if
+// there is no map (recognition alone makes none, and a run with --map adds to that of another), the
+// query was lost, or the map has no picture of one of them.
+report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::LedgerRow& row);
 
 // The figures of a finished run, measured anew from the files in its folder against the truth that
 // comes with its source (config.yaml says which). Recognition alone is told by its matches.txt.

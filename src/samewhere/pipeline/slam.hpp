@@ -46,7 +46,6 @@ class Slam {
   std::uint16_t session() const { return tracking_.session(); }
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return tracking_.frames(); }
-  bool is_keyframe(core::FrameId frame) const { return tracking_.is_keyframe(frame); }
   std::uint64_t describer_checksum() const { return loop_closing_.detector().describer_checksum(); }
 
   // From here on: after finish().

@@ -88,7 +88,7 @@ class LookAlikeRooms : public testing::Test {
   static scene::LoopEdge lie() { return loop(2 * kPerRoom - 1, kPerRoom - 1, {}, kLie); }
 
   scene::MapVersion closed(const scene::MapVersion& before, const scene::LoopEdge& heard) const {
-    return with_loop(before, *correct::between_holders(before, heard), config_).map;
+    return with_loop(before, correct::between_holders(before, heard).value(), config_).map;
   }
 
   std::vector<core::LandmarkId> survivors(const scene::MapVersion& map) const {

@@ -41,7 +41,6 @@ class Tracking {
 
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return frames_; }
-  bool is_keyframe(core::FrameId frame) const { return keyframe_of_.contains(frame); }
   const core::Timings& timings() const { return timings_; }
 
  private:

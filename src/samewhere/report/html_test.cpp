@@ -7,6 +7,7 @@
 
 #include <samewhere/report/html.hpp>
 #include <samewhere/report/html_text.hpp>
+#include <samewhere/report/pair_figure.hpp>
 #include <samewhere/report/pairs.hpp>
 #include <samewhere/report/plan_view.hpp>
 #include <samewhere/report/status_strip.hpp>
@@ -196,6 +197,25 @@ TEST(RefusedRows, ComeMostConvincingFirst) {
   EXPECT_EQ(rows[1]->candidate.query, core::FrameId(300));  // 44, undecided
   EXPECT_EQ(rows[2]->candidate.query, core::FrameId(293));
   EXPECT_EQ(rows.back()->candidate.query, core::FrameId(270));
+}
+
+TEST(PairSvg, ShowsBothViewsWhatMatchesAndWhy) {
+  const RunRecord record = sample_record();
+  const core::LedgerRow& row = *refused_rows(record.ledger)[0];
+  PairRecord pair{row,
+                  {record.thumbnails.at(row.candidate.query), {640, 480}},
+                  {record.thumbnails.at(row.candidate.match), {320, 240}},
+                  {{{0.0F, 0.0F}, {300.0F, 200.0F}}, {{10.0F, 20.0F}, {30.0F, 40.0F}}}};
+  const std::string svg = without_pictures(pair_svg(pair));
+  EXPECT_TRUE(is_well_nested(svg));
+  EXPECT_EQ(count_of(svg, "<image"), 2);
+  const std::size_t path = svg.find("<path");
+  EXPECT_EQ(count_of(svg.substr(path, svg.find("stroke=\"#", path) - path), "L"), 2)
+      << "a line for each match";
+  EXPECT_EQ(count_of(svg, "<text"), 6) << "two numbers, verdict, scores, a reason in two lines";
+  EXPECT_NE(svg.find("M0.0 0.0L779.0 250.0"), std::string::npos) << "each view at its own scale";
+  EXPECT_NE(svg.find("refused: odometry"), std::string::npos);
+  EXPECT_NE(svg.find("9.8 m"), std::string::npos);
 }
 
 TEST(PairCards, DoWithoutAThumbnail) {

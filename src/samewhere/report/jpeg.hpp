@@ -7,7 +7,7 @@
 
 namespace samewhere::report {
 
-constexpr int kThumbnailWidth_px = 160;  // of the pictures in reports
+constexpr int kThumbnailWidth_px = 240;  // of the pictures in reports and maps
 
 // The picture (8-bit grey or BGR, not empty) as JPEG, at most max_width_px wide: shrunk if need be,
 // never enlarged.

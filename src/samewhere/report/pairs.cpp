@@ -31,19 +31,11 @@ std::string view(const RunRecord& record, core::FrameId frame) {
                      frame.index());
 }
 
-std::string scores_of(const core::Evidence& evidence) {
-  std::string text = fmt::format("similarity {:.2f}", evidence.similarity);
-  if (evidence.geometry)
-    fmt::format_to(std::back_inserter(text), " · {} matches · {} inliers",
-                   evidence.geometry->num_matches, evidence.geometry->num_inliers);
-  return text;
-}
-
 std::string verdict_label(const core::Verdict& verdict) {
-  if (core::is_loop(verdict)) return "<span class=\"verdict yes\">same place</span>";
-  if (std::holds_alternative<core::Ambiguous>(verdict))
-    return "<span class=\"verdict maybe\">cannot tell</span>";
-  return fmt::format("<span class=\"verdict no\">refused: {}</span>", core::stage_of(verdict));
+  const char* shade = core::is_loop(verdict)                             ? "yes"
+                      : std::holds_alternative<core::Ambiguous>(verdict) ? "maybe"
+                                                                         : "no";
+  return fmt::format("<span class=\"verdict {}\">{}</span>", shade, verdict_in_words(verdict));
 }
 
 std::string card(const RunRecord& record, const core::LedgerRow& row) {
@@ -63,6 +55,20 @@ std::pair<int, double> conviction_of(const core::LedgerRow& row) {
 }
 
 }  // namespace
+
+std::string scores_of(const core::Evidence& evidence) {
+  std::string text = fmt::format("similarity {:.2f}", evidence.similarity);
+  if (evidence.geometry)
+    fmt::format_to(std::back_inserter(text), " · {} matches · {} inliers",
+                   evidence.geometry->num_matches, evidence.geometry->num_inliers);
+  return text;
+}
+
+std::string verdict_in_words(const core::Verdict& verdict) {
+  if (core::is_loop(verdict)) return "same place";
+  if (std::holds_alternative<core::Ambiguous>(verdict)) return "cannot tell";
+  return fmt::format("refused: {}", core::stage_of(verdict));
+}
 
 std::vector<const core::LedgerRow*> accepted_rows(const core::Ledger& ledger) {
   std::vector<const core::LedgerRow*> rows = final_rows(ledger);

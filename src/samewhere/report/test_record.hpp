@@ -158,7 +158,8 @@ inline RunRecord sample_record() {
   record.ledger = sample_ledger();
   for (const core::LedgerRow& row : record.ledger)
     for (const core::FrameId frame : {row.candidate.query, row.candidate.match})
-      record.thumbnails[frame] = jpeg_bytes(corridor_picture(static_cast<int>(frame.index())), 160);
+      record.thumbnails[frame] =
+          jpeg_bytes(corridor_picture(static_cast<int>(frame.index())), kThumbnailWidth_px);
   record.points = {{{1.0f, 2.0f, 3.0f}, {255, 128, 0}}, {{-1.0f, 0.5f, 0.0f}, {1, 2, 3}}};
   record.figures = {{"frames with a measured pose", "312 of 320"},
                     {"ATE RMSE", "0.042 m"},

@@ -26,15 +26,17 @@ constexpr char kMerge[] = "merge";
 constexpr char kFrame[] = "frame";            // number: the frame's id
 constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
 constexpr char kLedger[] = "ledger";          // bytes: a line of JSON
-constexpr const char* kTables[] = {kHeader, kState,      kRig,   kKeyframe,    kView,
-                                   kSlots,  kLandmark,   kLoop,  kDoubtedLoop, kMerge,
-                                   kFrame,  kDescriptor, kLedger};
+constexpr char kThumbnail[] = "thumbnail";    // number: the frame's id; bytes: JPEG
+constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,    kView,
+                                   kSlots,  kLandmark,   kLoop,   kDoubtedLoop, kMerge,
+                                   kFrame,  kDescriptor, kLedger, kThumbnail};
 
-// 2: observations have a cause, loops may be doubted.
-constexpr std::int64_t kMapFileVersion = 4;
+// 5: thumbnails.
+constexpr std::int64_t kMapFileVersion = 5;
 constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion, kTables};
 
-// How much a commit left: rows that went missing are missed.
+// How much a commit left: rows that went missing are missed (but thumbnails, on which nothing
+// hangs).
 struct State {
   std::uint64_t map_number = 0;
   std::uint64_t num_settings = 0;
@@ -87,6 +89,9 @@ class MapFile::Content {
   const std::filesystem::path& path() const { return file_.path(); }
 
   StoredMap load();
+  std::optional<std::string> thumbnail(core::FrameId frame) {
+    return file_.find(kThumbnail, row_number(frame));
+  }
   void commit(const MapVersion& after, const MapExtras& extras);
 
  private:
@@ -306,6 +311,8 @@ void MapFile::Content::write_extras(const MapExtras& extras, State& state) {
   }
   for (const std::string& row : extras.ledger)
     file_.put(kLedger, static_cast<std::int64_t>(state.num_ledger_rows++), row);
+  for (const Thumbnail& thumbnail : extras.thumbnails)
+    file_.put(kThumbnail, row_number(thumbnail.frame), thumbnail.jpeg);
 }
 
 void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) {
@@ -361,6 +368,10 @@ void MapFile::require_same_settings(const MapHeader& expected) const {
 }
 
 StoredMap MapFile::load() { return content_->load(); }
+
+std::optional<std::string> MapFile::thumbnail(core::FrameId frame) {
+  return content_->thumbnail(frame);
+}
 
 void MapFile::commit(const MapVersion& after, const MapExtras& extras) {
   content_->commit(after, extras);

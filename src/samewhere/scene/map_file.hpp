@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,19 @@ namespace samewhere::scene {
 // under the same.
 using MapHeader = std::map<std::string, std::string>;
 
+// A small picture of a frame, to be looked at.
+struct Thumbnail {
+  core::FrameId frame;
+  std::string jpeg;
+};
+
 // What belongs to a map beside the map itself.
 struct MapExtras {
   std::vector<core::FramePose> frames;  // to derive a trajectory from
   std::vector<core::Descriptor>
-      descriptors;                  // of keyframes' views: the place index is made of them
-  std::vector<std::string> ledger;  // judged candidates, each as one line of JSON
+      descriptors;                    // of keyframes' views: the place index is made of them
+  std::vector<std::string> ledger;    // judged candidates, each as one line of JSON
+  std::vector<Thumbnail> thumbnails;  // of keyframes; to be written alone: see thumbnail()
 };
 
 struct StoredMap {
@@ -52,13 +60,17 @@ class MapFile {
   // Throws InputError naming the first setting, by name, that differs, and both values.
   void require_same_settings(const MapHeader& expected) const;
 
-  // Everything, exactly as it was committed. Throws InputError naming what is damaged or missing.
+  // Everything but the thumbnails, exactly as it was committed. Throws InputError naming what is
+  // damaged or missing.
   StoredMap load();
 
+  // The picture of the frame, if there is one. Throws InputError if it is damaged.
+  std::optional<std::string> thumbnail(core::FrameId frame);
+
   // Writes in one transaction what the map has that the last commit had not: rows are compared only
-  // where the two versions do not share memory. Extras: frames are new or written anew; descriptors
-  // and ledger are added. A file that was opened is loaded before. Throws InputError if it cannot
-  // be written; the file then holds the last commit.
+  // where the two versions do not share memory. Extras: frames are new or written anew;
+  // descriptors, ledger and thumbnails are added. A file that was opened is loaded before. Throws
+  // InputError if it cannot be written; the file then holds the last commit.
   void commit(const MapVersion& after, const MapExtras& extras);
 
  private:

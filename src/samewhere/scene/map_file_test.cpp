@@ -1,3 +1,6 @@
+#include <gmock/gmock.h>
+
+#include <samewhere/core/file.hpp>
 #include <samewhere/scene/test_map_file.hpp>
 
 namespace samewhere::scene {
@@ -48,6 +51,23 @@ TEST_F(MapFiles, AFramePoseThatIsCommittedAgainIsReplaced) {
     file.commit(stored.map, {.frames = {stored.extras.frames[1]}});
   }
   expect_same(MapFile::open(path()).load().extras, stored.extras);
+}
+
+TEST_F(MapFiles, PicturesAreReadOneByOne) {
+  const core::FrameId seen(7, 3);
+  const std::string jpeg("not\0really", 10);
+  {
+    MapFile file = MapFile::create(path(), {});
+    RandomEdits edits(3);
+    file.commit(apply(MapVersion{}, edits.next(MapVersion{})), {.thumbnails = {{seen, jpeg}}});
+  }
+  EXPECT_EQ(MapFile::open(path()).thumbnail(seen), jpeg);
+  EXPECT_EQ(MapFile::open(path()).thumbnail(core::FrameId(7)), std::nullopt);
+  std::string bytes = core::read_file(path());
+  bytes[bytes.find(jpeg)] ^= 1;
+  core::write_file(path(), bytes);
+  EXPECT_THAT(complaint([&] { MapFile::open(path()).thumbnail(seen); }),
+              testing::HasSubstr("is damaged: its checksum does not fit"));
 }
 
 TEST_F(MapFiles, AReaderSeesTheLastCommitWhileItIsWritten) {

@@ -100,15 +100,14 @@ void cull(MapVersion& map, core::KeyframeId id) {
   core::require(std::none_of(map.loops.begin(), map.loops.end(),
                              [&](const LoopEdge& l) { return l.query == id || l.match == id; }),
                 "a keyframe that a loop edge holds is not culled");
-  const std::vector<core::LandmarkId> shown = keyframe.slots;
-  for (const auto& landmark : shown) {
-    if (landmark.is_valid()) forget(map, {landmark, id});
+  for (std::size_t slot = 0; slot < keyframe.slots.size(); ++slot) {
+    const core::LandmarkId shown = keyframe.slots[slot];
+    if (!shown.is_valid()) continue;
+    forget(map, {shown, id});
+    hang_on_observer(map, map.landmarks.edit(shown.index()));
   }
   keyframe.culled_parent_from_keyframe =
       inverse(world_from_body(map, keyframe.odometry->parent)) * keyframe.world_from_body;
-  for (const auto& landmark : shown) {
-    if (landmark.is_valid()) hang_on_observer(map, map.landmarks.edit(landmark.index()));
-  }
   for (std::size_t i = id.index() + 1; i < map.keyframes.size(); ++i) {
     const Keyframe& child = map.keyframes[i];
     if (is_live(child) && child.odometry && child.odometry->parent == id)
@@ -209,6 +208,12 @@ Holder holder_of(const MapVersion& map, core::KeyframeId id) {
               *culled.culled_parent_from_keyframe * holder.holder_from_keyframe};
   }
   return holder;
+}
+
+const Keyframe* keyframe_of(const MapVersion& map, core::FrameId frame) {
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
+    if (map.keyframes[i].view.frame == frame) return &map.keyframes[i];
+  return nullptr;
 }
 
 core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id) {

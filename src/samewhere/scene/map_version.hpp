@@ -23,7 +23,7 @@ struct Observation {
       {};  // the loop for which it was made; invalid: tracking or mapping alone
 };
 
-// A point of the world. Where it is hangs on the keyframe that saw it first.
+// A point of the world. Where it is hangs on a keyframe that sees it, or saw it and is live.
 struct Landmark {
   core::LandmarkId id;
   core::KeyframeId anchor;
@@ -190,6 +190,9 @@ core::Rigid3 settled_parent_from_keyframe(const Keyframe& keyframe);
 
 // Pose of a keyframe, culled or not.
 core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id);
+
+// The keyframe, live or not, that the frame became; nullptr: it is none.
+const Keyframe* keyframe_of(const MapVersion& map, core::FrameId frame);
 
 // Pose of a frame relative to its reference keyframe, in the map's lengths of today.
 core::Rigid3 reference_from_frame(const MapVersion& map, const core::FramePose& pose);

@@ -117,17 +117,39 @@ void RowFile::remove_from(const char* table, std::int64_t first_number) {
   remove.step();
 }
 
+namespace {
+
+// The bytes of a row (number, bytes, checksum) that `select` stands on; `name` is how a message
+// calls it.
+std::string_view checked_bytes(const Statement& select, const char* table,
+                               const std::string& name) {
+  const std::string_view bytes = select.bytes(1);
+  if (select.number(2) != row_checksum(table, select.number(0), bytes))
+    throw core::InputError(name + " is damaged: its checksum does not fit what it holds");
+  return bytes;
+}
+
+}  // namespace
+
+std::string RowFile::name_of(const char* table, std::int64_t number) const {
+  return fmt::format("{}: {} {}", path().string(), table, number);
+}
+
+std::optional<std::string> RowFile::find(const char* table, std::int64_t number) {
+  Statement select = database_->prepare(
+      fmt::format("SELECT number, bytes, checksum FROM {} WHERE number = ?1", table));
+  select.bind(1, number);
+  if (!select.step()) return std::nullopt;
+  return std::string(checked_bytes(select, table, name_of(table, number)));
+}
+
 void RowFile::read(const char* table, std::uint64_t count, const Use& use) {
   Statement select = database_->prepare(
       fmt::format("SELECT number, bytes, checksum FROM {} ORDER BY number", table));
   std::uint64_t num_read = 0;
   while (select.step()) {
-    const std::int64_t number = select.number(0);
-    const std::string row = fmt::format("{}: {} {}", path().string(), table, number);
-    const std::string_view bytes = select.bytes(1);
-    if (select.number(2) != row_checksum(table, number, bytes)) {
-      throw core::InputError(row + " is damaged: its checksum does not fit what it holds");
-    }
+    const std::string row = name_of(table, select.number(0));
+    const std::string_view bytes = checked_bytes(select, table, row);
     if (num_read == count)
       refuse(path(), fmt::format("is damaged: more than {} rows of {}", count, table));
     use(bytes, row);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -39,12 +40,15 @@ class RowFile {
   // `count` of them.
   using Use = std::function<void(std::string_view bytes, const std::string& row)>;
   void read(const char* table, std::uint64_t count, const Use& use);
+  // One row, or nothing if it is not there. Throws InputError if it does not fit its checksum.
+  std::optional<std::string> find(const char* table, std::int64_t number);
 
   const std::filesystem::path& path() const { return database_->path(); }
 
  private:
   RowFile(const std::filesystem::path& path, OpenMode mode);
   Statement& statement(const std::string& sql);
+  std::string name_of(const char* table, std::int64_t number) const;
 
   std::unique_ptr<Database> database_;
   bool is_writable_ = false;
