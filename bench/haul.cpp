@@ -53,6 +53,14 @@ struct Part {
   std::vector<double> processor_ms;  // of tracking alone
 };
 
+// Median, p99, worst.
+std::string in_short(const std::vector<double>& ms) {
+  if (ms.empty()) return "";
+  const core::TimingSummary summary = core::summarize(ms);
+  return fmt::format("{:.1f} / {:.1f} / {:.1f}", summary.median_ms, summary.p99_ms,
+                     *std::max_element(ms.begin(), ms.end()));
+}
+
 class Haul {
  public:
   explicit Haul(const pipeline::Config& config)
@@ -73,6 +81,20 @@ class Haul {
     progress.finish();
     slam_.finish();
     return std::move(table_);
+  }
+
+  // What of it grows with the map: wall times of each stage, of the first third of its calls and of
+  // the last.
+  Table stages() const {
+    Table table{{"stage", "times", "first third, ms median / p99 / worst", "last third"}, {}};
+    const core::Timings timings = slam_.timings();
+    for (const auto& [stage, ms] : timings.durations_ms()) {
+      const auto third = static_cast<std::ptrdiff_t>(ms.size() / 3);
+      table.rows.push_back({stage, std::to_string(ms.size()),
+                            in_short({ms.begin(), ms.begin() + third}),
+                            in_short({ms.end() - third, ms.end()})});
+    }
+    return table;
   }
 
   // Over all frames, metres.
@@ -141,6 +163,7 @@ void measure(const Settings& settings) {
   Haul haul(config);
   const Table table = haul.run(settings.num_parts);
   publish(table, settings.csv_file);
+  publish(haul.stages(), "");
   fmt::print("ATE RMSE {:.3f} m, peak memory {:.0f} MiB\n", haul.ate_m(), core::peak_memory_mib());
 }
 
