@@ -12,7 +12,8 @@ struct Config {
   double max_turn_rad = 0.15;
   double min_tracked_ratio_without_depth = 0.5;
   double max_move_ratio_without_depth = 0.1;
-  int max_neighbours = 6;
+  int max_neighbours = 20;
+  int near_neighbours = 6;
   int min_shared = 15;
   int search_keyframes = 8;
   double min_parallax_rad = 0.018;
@@ -67,6 +68,11 @@ inline void visit_keyframe_fields(Config& config, core::FieldVisitor& visit) {
 inline void visit_landmark_fields(Config& config, core::FieldVisitor& visit) {
   visit("max_neighbours", config.max_neighbours,
         {.help = "keyframes beside the reference whose landmarks tracking sees",
+         .min = 0,
+         .max = 100});
+  visit("near_neighbours", config.near_neighbours,
+        {.help = "the nearest of them, whose landmarks are looked for all over the view when the "
+                 "motion is lost",
          .min = 0,
          .max = 100});
   visit("min_shared", config.min_shared,

@@ -104,6 +104,11 @@ bool can_keep(const scene::MapVersion& map, const features::View& view, const Co
   return is_without_depth(map) || num_with_depth(view) >= config.min_landmarks;
 }
 
+scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId reference,
+                          const Config& config) {
+  return build_local_map(map, reference, {config.max_neighbours, config.near_neighbours});
+}
+
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
                       const Config& config) {
   if (!can_keep(map, tracked.view, config)) return false;

@@ -36,6 +36,10 @@ bool can_start(const features::View& view, const Config& config);
 // the map was started without.
 bool can_keep(const scene::MapVersion& map, const features::View& view, const Config& config);
 
+// What tracking looks for around a keyframe.
+scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId reference,
+                          const Config& config);
+
 // Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
 // lost sight of it.
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,

@@ -3,6 +3,7 @@
 
 #include <samewhere/core/median.hpp>
 #include <samewhere/geometry/camera.hpp>
+#include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/place_finder.hpp>
 
 namespace samewhere::pipeline {
@@ -85,7 +86,7 @@ int num_in_sight(const scene::LocalMap& around, const features::View& view,
 void PlaceFinder::track_around(core::KeyframeId keyframe, const Place& place,
                                const Question& question, Sight& sight) const {
   const scene::MapVersion& map = question.map;
-  const scene::LocalMap around = build_local_map(map, keyframe, config_.map.max_neighbours);
+  const scene::LocalMap around = map::local_map(map, keyframe, config_.map);
   const auto offer = [&](std::optional<track::Track> track) {
     if (!track || !question.is_within_reach(track->pose)) return;
     FoundPlace next{around, std::move(*track)};
@@ -171,7 +172,7 @@ PlaceFinder::Explained PlaceFinder::explained(const Hypothesis& hypothesis,
   }
   const Place& last = hypothesis.place;
   const core::KeyframeId keyframe = holder_of(map, last.keyframe).keyframe;
-  const scene::LocalMap around = build_local_map(map, keyframe, config_.map.max_neighbours);
+  const scene::LocalMap around = map::local_map(map, keyframe, config_.map);
   const core::Rigid3 reference_from_body =
       inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, last);
   return {0, num_in_sight(around, view, reference_from_body)};

@@ -317,7 +317,7 @@ MapAnswer Tracking::wait_for_mapping() {
 }
 
 void Tracking::look_around(core::KeyframeId reference) {
-  local_map_ = scene::build_local_map(map_, reference, config_.map.max_neighbours);
+  local_map_ = map::local_map(map_, reference, config_.map);
 }
 
 bool Tracking::is_kept(const map::TrackedView& tracked) const {

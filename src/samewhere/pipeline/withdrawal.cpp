@@ -4,9 +4,9 @@
 
 #include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/map/local_bundle.hpp>
+#include <samewhere/map/mapper.hpp>
 #include <samewhere/map/part.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
-#include <samewhere/scene/local_map.hpp>
 #include <samewhere/track/tracker.hpp>
 
 namespace samewhere::pipeline {
@@ -55,7 +55,7 @@ scene::Edit tracked_anew(const MapVersion& map, core::KeyframeId id, const Confi
   const scene::Keyframe& keyframe = map.at(id);
   if (!keyframe.odometry) return edit;
   const core::KeyframeId parent = holder_of(map, keyframe.odometry->parent).keyframe;
-  const auto local = build_local_map(map, parent, config.map.max_neighbours);
+  const auto local = map::local_map(map, parent, config.map);
   const track::Tracker tracker(
       {config.track, config.features, config.optimize, static_cast<std::uint64_t>(config.seed)});
   const auto found = tracker.track(

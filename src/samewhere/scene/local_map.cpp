@@ -2,6 +2,7 @@
 #include <cstring>
 #include <map>
 #include <set>
+#include <span>
 
 #include <samewhere/scene/local_map.hpp>
 
@@ -19,18 +20,31 @@ std::vector<core::KeyframeId> neighbourhood(const MapVersion& map, core::Keyfram
   return chosen;
 }
 
-}  // namespace
-
-LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, int max_neighbours) {
+std::set<core::LandmarkId> shown_by(const MapVersion& map,
+                                    std::span<const core::KeyframeId> keyframes) {
   std::set<core::LandmarkId> ids;
-  for (const auto& keyframe : neighbourhood(map, reference, max_neighbours)) {
+  for (const auto& keyframe : keyframes) {
     for (const auto& id : map.at(keyframe).slots) {
       if (id.is_valid()) ids.insert(id);
     }
   }
+  return ids;
+}
+
+}  // namespace
+
+LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, Neighbours neighbours) {
+  const std::vector<core::KeyframeId> keyframes = neighbourhood(map, reference, neighbours.all);
+  const auto middle =
+      keyframes.begin() + std::min<std::ptrdiff_t>(neighbours.near + 1, std::ssize(keyframes));
+  const std::set<core::LandmarkId> near = shown_by(map, {keyframes.begin(), middle});
+  std::vector<core::LandmarkId> ids(near.begin(), near.end());
+  for (const core::LandmarkId id : shown_by(map, {middle, keyframes.end()}))
+    if (!near.contains(id)) ids.push_back(id);
   const core::Rigid3 reference_from_world = inverse(world_from_body(map, reference));
   LocalMap local;
   local.reference = reference;
+  local.num_near = static_cast<int>(near.size());
   local.descriptors = cv::Mat(static_cast<int>(ids.size()), 32, CV_8U);
   for (const auto& id : ids) {
     const Landmark& landmark = map.at(id);

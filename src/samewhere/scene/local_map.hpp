@@ -7,9 +7,11 @@
 
 namespace samewhere::scene {
 
-// The landmarks that a camera near the reference keyframe may see, as arrays of equal length.
+// The landmarks that a camera near the reference keyframe may see, as arrays of equal length: first
+// the near ones, among which a camera looks that does not know where it is.
 struct LocalMap {
   core::KeyframeId reference;
+  int num_near = 0;
   std::vector<core::LandmarkId> landmarks;
   std::vector<Eigen::Vector3d> points_in_reference;  // body frame of the reference, metres
   std::vector<double> range_m;                       // from which each was described
@@ -19,9 +21,15 @@ struct LocalMap {
   int size() const { return static_cast<int>(landmarks.size()); }
 };
 
-// Landmarks of the reference and of up to `max_neighbours` keyframes that share most landmarks with
-// it, ascending by id.
-LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, int max_neighbours);
+// How many of the keyframes that share most landmarks with the reference make its local map, and
+// how many of them are near.
+struct Neighbours {
+  int all = 0;
+  int near = 0;
+};
+
+// Landmarks of the reference and of its near neighbours, ascending by id, then those of the others.
+LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, Neighbours neighbours);
 
 // The keyframe that shows most of these landmarks, however old: what lies around it is the local
 // map of who sees them. Nothing if none shows any.

@@ -148,12 +148,12 @@ TEST_F(TwoKeyframes, ACulledLandmarkAndOneThatNobodySeesAreNotShown) {
   seen.sightings = {{core::LandmarkId(0), {core::KeyframeId(1), 0}},
                     {core::LandmarkId(1), {core::KeyframeId(1), 1}}};
   const MapVersion before = apply(map_, seen);
-  EXPECT_EQ(build_local_map(before, core::KeyframeId(1), 5).size(), 2);
+  EXPECT_EQ(build_local_map(before, core::KeyframeId(1), {5, 5}).size(), 2);
   Edit gone;
   gone.culled_landmarks = {core::LandmarkId(0)};
   gone.removed_observations = {{core::LandmarkId(1), core::KeyframeId(1)}};
   const MapVersion after = apply(before, gone);
-  EXPECT_EQ(build_local_map(after, core::KeyframeId(1), 5).size(), 0);
+  EXPECT_EQ(build_local_map(after, core::KeyframeId(1), {5, 5}).size(), 0);
   EXPECT_EQ(num_live(after.landmarks), 0U);
   EXPECT_EQ(after.landmarks.size(), 2U) << "ids are positions";
   EXPECT_THROW(apply(after, gone), core::ContractError) << "removed once";
@@ -311,13 +311,27 @@ TEST_F(TwoKeyframes, TheLocalMapSpeaksInTheReferencesFrame) {
   Edit again;
   again.sightings = {{core::LandmarkId(0), {core::KeyframeId(1), 0}}};
   const MapVersion seen = apply(map_, again);
-  const LocalMap local = build_local_map(seen, core::KeyframeId(1), 5);
+  const LocalMap local = build_local_map(seen, core::KeyframeId(1), {5, 5});
   ASSERT_EQ(local.size(), 1);
   const Eigen::Vector3d in_world = seen.keyframes[1].world_from_body * local.points_in_reference[0];
   EXPECT_LT((in_world - position_in_world(seen, seen.landmarks[0])).norm(), 1e-12);
   EXPECT_EQ(local.descriptors.rows, 1);
-  EXPECT_EQ(build_local_map(seen, core::KeyframeId(0), 0).size(), 0)
+  EXPECT_EQ(build_local_map(seen, core::KeyframeId(0), {}).size(), 0)
       << "keyframe 0 shows no landmark in its slots";
+}
+
+TEST_F(TwoKeyframes, WhatTheReferenceShowsIsNearAndComesFirst) {
+  Edit more;
+  more.landmarks = {landmark(1, 0, {0.0, 0.0, 2.0}), landmark(2, 0, {0.1, 0.0, 2.0})};
+  const auto sighting = [](std::uint64_t id, std::uint64_t keyframe, int slot) {
+    return Sighting{core::LandmarkId(id), {core::KeyframeId(keyframe), slot}};
+  };
+  more.sightings = {sighting(1, 0, 1), sighting(2, 0, 2), sighting(2, 1, 2)};
+  const MapVersion seen = apply(map_, more);
+  const LocalMap local = build_local_map(seen, core::KeyframeId(1), {.all = 1, .near = 0});
+  EXPECT_EQ(local.landmarks, (std::vector{core::LandmarkId(2), core::LandmarkId(1)}));
+  EXPECT_EQ(local.num_near, 1);
+  EXPECT_EQ(build_local_map(seen, core::KeyframeId(1), {.all = 1, .near = 5}).num_near, 2);
 }
 
 }  // namespace

@@ -145,7 +145,8 @@ std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
 
 std::optional<Track> Tracker::track_anywhere(const View& view, const LocalMap& map) const {
   return solve(view, map,
-               match_pair(map.descriptors, view.features->descriptors, settings_.features));
+               match_pair(map.descriptors.rowRange(0, map.num_near), view.features->descriptors,
+                          settings_.features));
 }
 
 }  // namespace samewhere::track

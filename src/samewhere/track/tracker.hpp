@@ -39,7 +39,7 @@ class Tracker {
   std::optional<Track> track(const features::View& view, const scene::LocalMap& map,
                              const core::Rigid3& guessed_reference_from_body) const;
 
-  // Without a guess: every landmark may match every feature.
+  // Without a guess: every near landmark may match every feature.
   std::optional<Track> track_anywhere(const features::View& view, const scene::LocalMap& map) const;
 
  private:

@@ -19,6 +19,7 @@ scene::LocalMap local_map_of(const features::View& view) {
     map.range_m.push_back(point.norm());
     map.octave.push_back(0);
   }
+  map.num_near = map.size();
   return map;
 }
 
@@ -53,6 +54,16 @@ TEST_F(TestTracker, FindsThePoseWithoutOrWithAWrongGuess) {
     ASSERT_TRUE(track);
     EXPECT_LT(error_of(*track, moved_), 0.005);
   }
+}
+
+TEST_F(TestTracker, WhoDoesNotKnowWhereHeIsLooksAmongTheNear) {
+  const features::View view = features::test_view(world_, 1, moved_);
+  map_.num_near = 5;
+  EXPECT_FALSE(tracker_.track_anywhere(view, map_));
+  map_.num_near = 60;
+  const auto track = tracker_.track_anywhere(view, map_);
+  ASSERT_TRUE(track);
+  EXPECT_GT(track->matches.size(), 60U) << "once he knows, all that should be there is looked for";
 }
 
 // Landmarks that look like features of the view and stand where a wrong pose would see them.
