@@ -144,6 +144,7 @@ std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
 }
 
 std::optional<Track> Tracker::track_anywhere(const View& view, const LocalMap& map) const {
+  if (map.num_near == 0) return std::nullopt;  // nor has a matrix without rows any to cut from
   return solve(view, map,
                match_pair(map.descriptors.rowRange(0, map.num_near), view.features->descriptors,
                           settings_.features));
