@@ -215,6 +215,19 @@ bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis
   return explains_as_much || (!is_weak && is_as_true_to_itself);
 }
 
+bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const Proof& proof) const {
+  if (!hypothesis.found || !hypothesis.place.is_recognised) return false;
+  const bool is_weak = hypothesis.found->track.pose.status == core::FrameStatus::kWeak;
+  if (is_weak && !(proof.may_be_weak && hypotheses_.size() == 1)) return false;
+  const auto num_testable =
+      std::count_if(hypothesis.explained.begin(), hypothesis.explained.end(),
+                    [](const Explained& of_view) { return of_view.is_testable; });
+  if (num_testable < proof.num_views) return false;
+  return std::none_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
+    return &other != &hypothesis && is_rival(other, hypothesis);
+  });
+}
+
 bool PlaceFinder::has_fresh_place(int num_views) const {
   return std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& hypothesis) {
     return hypothesis.place.is_recognised && std::ssize(hypothesis.explained) < num_views;
@@ -223,7 +236,7 @@ bool PlaceFinder::has_fresh_place(int num_views) const {
 
 std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
                                             const scene::MapVersion& map,
-                                            const std::vector<Place>& places, int num_views,
+                                            const std::vector<Place>& places, const Proof& proof,
                                             const IsWithinReach& is_within_reach) {
   const Question question{view, map, is_within_reach};
   std::vector<Place> elsewhere;
@@ -243,16 +256,7 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
   record(view, map);
   merge(map);
   for (Hypothesis& hypothesis : hypotheses_) {
-    const bool is_seen = hypothesis.found && hypothesis.place.is_recognised &&
-                         hypothesis.found->track.pose.status != core::FrameStatus::kWeak;
-    const auto num_testable =
-        std::count_if(hypothesis.explained.begin(), hypothesis.explained.end(),
-                      [](const Explained& of_view) { return of_view.is_testable; });
-    const bool has_rival =
-        std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
-          return &other != &hypothesis && is_rival(other, hypothesis);
-        });
-    if (!is_seen || num_testable < num_views || has_rival) continue;
+    if (!is_proven(hypothesis, proof)) continue;
     FoundPlace found = std::move(*hypothesis.found);
     forget();
     return found;

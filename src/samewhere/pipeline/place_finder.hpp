@@ -20,6 +20,14 @@ struct FoundPlace {
 // Whether one can have got there since the last pose.
 using IsWithinReach = std::function<bool(const core::FramePose& pose)>;
 
+// What must speak for a place. Who looked away for a moment is near where he was: one view is
+// enough, and if reach bounds where he can be, a weak pose will do where no other place was thought
+// of.
+struct Proof {
+  int num_views = 1;
+  bool may_be_weak = false;
+};
+
 // Where is somebody who is lost? Every place of the map where the views since then may have been
 // taken is held against every other: each view is tracked among the landmarks of each, and what
 // they explain of the same views is added up. One place is found once it has explained enough
@@ -34,9 +42,9 @@ class PlaceFinder {
 
   // The next view. `places`: where it may have been taken, those of earlier views need not be told
   // again. Two poses that hardly differ for what is in sight are one place; what is beyond reach is
-  // no place. What is found was recognised, and `num_views` views speak for it.
+  // no place. What is found was recognised and has this proof.
   std::optional<FoundPlace> look(const features::View& view, const scene::MapVersion& map,
-                                 const std::vector<Place>& places, int num_views,
+                                 const std::vector<Place>& places, const Proof& proof,
                                  const IsWithinReach& is_within_reach);
 
   // Whether some place was thought of too late to have explained `num_views` views yet.
@@ -80,6 +88,7 @@ class PlaceFinder {
   void record(const features::View& view, const scene::MapVersion& map);
   void merge(const scene::MapVersion& map);
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
+  bool is_proven(const Hypothesis& hypothesis, const Proof& proof) const;
 
   const Config& config_;
   const track::Tracker& tracker_;

@@ -43,7 +43,7 @@ class TestPlaceFinder : public testing::Test {
   std::optional<FoundPlace> look(const scene::MapVersion& map, int frame,
                                  const std::vector<Place>& places,
                                  const IsWithinReach& is_within_reach = anywhere) {
-    return finder_.look(features::test_view(world_, 10 + frame, {}), map, places, kNumViews,
+    return finder_.look(features::test_view(world_, 10 + frame, {}), map, places, {kNumViews},
                         is_within_reach);
   }
 
@@ -143,9 +143,37 @@ TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
   for (int i = 0; i < 2 * kNumViews; ++i) {
     const core::Rigid3 turning{core::exp_so3({0.0, 0.07 * i, 0.0}), {0.0, 0.0, 0.0}};
     EXPECT_FALSE(finder_.look(features::test_view(world_, 10 + i, turning), map,
-                              i == 0 ? both : std::vector<Place>{}, kNumViews, anywhere))
+                              i == 0 ? both : std::vector<Place>{}, {kNumViews}, anywhere))
         << "view " << i;
   }
+}
+
+class WeakSight : public TestPlaceFinder {
+ protected:
+  WeakSight() : weak_(thinned(features::test_view(world_, 10, {}), 0.03)) {
+    map_ = apply(map_, map::start_map(map_, features::test_view(world_, 0, {}), {}));
+  }
+
+  std::optional<FoundPlace> found(const std::vector<Place>& places, bool may_be_weak) {
+    return finder_.look(weak_, map_, places, {1, may_be_weak}, anywhere);
+  }
+
+  scene::MapVersion map_;
+  features::View weak_;
+  std::vector<Place> here_ = {{kHere, core::Rigid3{}, true}};
+};
+
+TEST_F(WeakSight, IsEnoughForAMomentOnly) {
+  EXPECT_FALSE(found(here_, false));
+  const auto place = found(here_, true);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->track.pose.status, core::FrameStatus::kWeak);
+  EXPECT_LT(place->track.pose.reference_from_frame.translation.norm(), 0.05);
+}
+
+TEST_F(WeakSight, IsNotEnoughWhereAnotherPlaceIsThoughtOf) {
+  map_ = map_with_twins(world_, 0.0);
+  for (int i = 0; i < kNumViews; ++i) EXPECT_FALSE(found(both_, true)) << "view " << i;
 }
 
 TEST_F(TestPlaceFinder, APlaceThatTheJudgeDidNotRecogniseIsARivalAndIsNotFound) {

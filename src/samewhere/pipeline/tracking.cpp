@@ -135,7 +135,7 @@ std::optional<map::TrackedView> Tracking::relocalise(const core::Frame& frame,
   // where he was last is a place like any other
   if (local_map_.size() > 0) answer.places.push_back({local_map_.reference, std::nullopt, true});
   auto found =
-      place_finder_.look(view, map_, answer.places, num_views_to_resume(view.stamp_s),
+      place_finder_.look(view, map_, answer.places, proof_to_resume(view.stamp_s),
                          [this](const core::FramePose& pose) { return is_within_reach(pose); });
   if (!found) return std::nullopt;
   local_map_ = std::move(found->around);
@@ -158,12 +158,12 @@ bool Tracking::is_within_reach(const core::FramePose& pose) const {
   return way_m <= kAnyhow_m + config_.track.lost.max_speed_m_s * (pose.stamp_s - last->stamp_s);
 }
 
-// Who looked away for a moment is near where he was.
-int Tracking::num_views_to_resume(double stamp_s) const {
+Proof Tracking::proof_to_resume(double stamp_s) const {
   constexpr double kMoment_s = 1.0;
   const core::FramePose* last = last_measured();
-  const bool is_near = last != nullptr && stamp_s - last->stamp_s <= kMoment_s;
-  return is_near ? 1 : config_.track.lost.views_to_resume;
+  const bool is_moment = last != nullptr && stamp_s - last->stamp_s <= kMoment_s;
+  // without depth nothing is beyond reach: a weak pose may be anywhere
+  return {is_moment ? 1 : config_.track.lost.views_to_resume, is_moment && !is_without_depth(map_)};
 }
 
 void Tracking::follow(map::TrackedView& tracked) {
@@ -243,7 +243,7 @@ bool Tracking::is_start_doubtful() const {
 std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
                                                      const features::View& view) {
   if (!starter_ && num_lost_ < config_.track.lost.frames_to_restart) return std::nullopt;
-  if (place_finder_.has_fresh_place(num_views_to_resume(view.stamp_s))) return std::nullopt;
+  if (place_finder_.has_fresh_place(proof_to_resume(view.stamp_s).num_views)) return std::nullopt;
   return start(frame, view);
 }
 

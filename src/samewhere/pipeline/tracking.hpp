@@ -56,7 +56,7 @@ class Tracking {
   // looks like this one.
   bool is_within_reach(const core::FramePose& pose) const;
   const core::FramePose* last_measured() const;  // nullptr: none in this session
-  int num_views_to_resume(double stamp_s) const;
+  Proof proof_to_resume(double stamp_s) const;
   // The reference goes along with the camera: it is the keyframe that shows most of what the view
   // shows, however old, and the local map is what lies around it.
   void follow(map::TrackedView& tracked);
