@@ -95,6 +95,8 @@ class MapFile::Content {
   void commit(const MapVersion& after, const MapExtras& extras);
 
  private:
+  // Since this one has read or written it: for what was not locked out (a network drive).
+  void require_unchanged();
   State read_state();
   void read_rigs();
   features::View read_view(std::string_view bytes, const std::string& row);
@@ -315,6 +317,13 @@ void MapFile::Content::write_extras(const MapExtras& extras, State& state) {
     file_.put(kThumbnail, row_number(thumbnail.frame), thumbnail.jpeg);
 }
 
+void MapFile::Content::require_unchanged() {
+  if (bytes_of(read_state()) == bytes_of(state_)) return;
+  throw core::InputError(path().string() +
+                         ": another program has written to this map meanwhile; what came since is "
+                         "not in it");
+}
+
 void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) {
   core::require(is_loaded_, "a map file that was opened is loaded before it is written");
   core::require(after.keyframes.size() >= map_.keyframes.size() &&
@@ -322,6 +331,7 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
                 "a map file is given a later version of its map");
   State state = state_;
   Transaction transaction = file_.transaction();
+  require_unchanged();
   write_keyframes(after, state);
   write_landmarks(after, state);
   write_loops(kLoop, map_.loops, after.loops);

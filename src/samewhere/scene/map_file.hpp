@@ -41,7 +41,8 @@ enum class MapAccess { kRead, kExtend };
 
 // A map in one SQLite file that holds, at any moment, the map of the last commit: after kill -9 all
 // that was committed is there, after a power cut maybe not the last commits (WAL with
-// synchronous=NORMAL). Each row carries a checksum. One program writes, others may read meanwhile.
+// synchronous=NORMAL). Each row carries a checksum. One program writes (a second is
+// refused, writer_lock.hpp), others may read meanwhile.
 // Every trouble with the file is an InputError of one line that begins with its path.
 class MapFile {
  public:

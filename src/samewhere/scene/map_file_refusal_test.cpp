@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <samewhere/core/file.hpp>
+#include <samewhere/scene/sqlite.hpp>
 #include <samewhere/scene/test_map_file.hpp>
 
 namespace samewhere::scene {
@@ -51,6 +52,37 @@ TEST_F(MapFiles, OtherSettingsAreNamedWithBothValues) {
                 file.require_same_settings({{"describer", "hog"}});
               }),
               HasSubstr("made with describer = unknown; this run has hog"));
+}
+
+TEST_F(MapFiles, OneProgramWritesAtATime) {
+  write_small_map();
+  {
+    const MapFile writing = MapFile::open(path(), MapAccess::kExtend);
+    EXPECT_THAT(complaint([&] { MapFile::open(path(), MapAccess::kExtend); }),
+                HasSubstr("m.sw: another program is writing to this map"));
+    EXPECT_EQ(complaint([&] { MapFile::open(path()).load(); }), "none") << "others may read";
+  }
+  EXPECT_EQ(complaint([&] { MapFile::open(path(), MapAccess::kExtend); }), "none");
+}
+
+// What the lock did not keep out: some network drives know none.
+TEST_F(MapFiles, WhatAnotherHasWrittenMeanwhileIsNotWrittenOver) {
+  MapVersion map = write_small_map();
+  std::filesystem::copy_file(path(), path("later.sw"));
+  RandomEdits edits(2);
+  map = apply(std::move(map), edits.next(map));
+  {
+    MapFile later = MapFile::open(path("later.sw"), MapAccess::kExtend);
+    later.load();
+    later.commit(map, {});
+  }
+  MapFile file = MapFile::open(path(), MapAccess::kExtend);
+  file.load();
+  Database other(path(), OpenMode::kWrite);
+  other.execute("ATTACH '" + path("later.sw").string() + "' AS later");
+  other.execute("INSERT OR REPLACE INTO state SELECT * FROM later.state");
+  EXPECT_THAT(complaint([&] { file.commit(map, {}); }),
+              HasSubstr("m.sw: another program has written to this map meanwhile"));
 }
 
 }  // namespace

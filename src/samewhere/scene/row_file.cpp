@@ -51,15 +51,16 @@ void remove_files(const std::filesystem::path& path) {
 
 }  // namespace
 
-RowFile::RowFile(const std::filesystem::path& path, OpenMode mode)
-    : database_(std::make_unique<Database>(path, mode)), is_writable_(mode != OpenMode::kRead) {
-  if (is_writable_) database_->execute("PRAGMA synchronous=NORMAL");
+RowFile::RowFile(const std::filesystem::path& path, OpenMode mode, std::unique_ptr<WriterLock> lock)
+    : lock_(std::move(lock)), database_(std::make_unique<Database>(path, mode)) {
+  if (lock_) database_->execute("PRAGMA synchronous=NORMAL");
 }
 
 RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind) {
   if (std::filesystem::exists(path)) refuse(path, "is there already; expected a new file");
+  auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsMade);
   try {
-    RowFile file(path, OpenMode::kCreate);
+    RowFile file(path, OpenMode::kCreate, std::move(lock));
     make_tables(*file.database_, kind);
     return file;
   } catch (const core::InputError&) {
@@ -73,7 +74,10 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
     refuse(path, fmt::format("no such file; expected a {}", kind.name));
   if (!std::filesystem::is_regular_file(path) || !is_sqlite(path))
     refuse(path, fmt::format("is no {}", kind.name));
-  RowFile file(path, mode);
+  auto lock = mode == OpenMode::kRead
+                  ? nullptr
+                  : std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
+  RowFile file(path, mode, std::move(lock));
   if (file.database_->number("PRAGMA application_id") != kind.magic)
     refuse(path, fmt::format("is no {} but another SQLite file", kind.name));
   const std::int64_t version = file.database_->number("PRAGMA user_version");
@@ -81,12 +85,12 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
     refuse(path, fmt::format("is a {} of version {}; expected version {}", kind.name, version,
                              kind.version));
   }
-  if (file.is_writable_) file.database_->execute("PRAGMA journal_mode=WAL");
+  if (file.lock_) file.database_->execute("PRAGMA journal_mode=WAL");
   return file;
 }
 
 RowFile::~RowFile() {
-  if (!database_ || !is_writable_) return;
+  if (!database_ || !lock_) return;
   statements_.clear();
   try {
     // into one plain file: one with a log needs a folder that can be written, even to be read

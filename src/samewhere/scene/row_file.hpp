@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <samewhere/scene/sqlite.hpp>
+#include <samewhere/scene/writer_lock.hpp>
 
 namespace samewhere::scene {
 
@@ -18,8 +19,9 @@ struct FileKind {
   std::span<const char* const> tables;  // a message calls a row "TABLE NUMBER"
 };
 
-// An SQLite file of tables of numbered rows of bytes, each with a checksum. Whatever goes wrong is
-// an InputError of one line that begins with the path.
+// An SQLite file of tables of numbered rows of bytes, each with a checksum. One program writes to
+// it at a time, any number may read. Whatever goes wrong is an InputError of one line that begins
+// with the path.
 class RowFile {
  public:
   // A new file; it must not be there. Nothing is left behind if it cannot be made.
@@ -46,12 +48,13 @@ class RowFile {
   const std::filesystem::path& path() const { return database_->path(); }
 
  private:
-  RowFile(const std::filesystem::path& path, OpenMode mode);
+  // Without a lock it is read only.
+  RowFile(const std::filesystem::path& path, OpenMode mode, std::unique_ptr<WriterLock> lock);
   Statement& statement(const std::string& sql);
   std::string name_of(const char* table, std::int64_t number) const;
 
+  std::unique_ptr<WriterLock> lock_;  // of who may write; released after the connection
   std::unique_ptr<Database> database_;
-  bool is_writable_ = false;
   std::map<std::string, Statement> statements_;  // by their text; gone before the database
 };
 
