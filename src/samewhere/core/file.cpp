@@ -17,13 +17,20 @@ namespace {
 }
 
 // Writes all of it, or returns the system's error number.
-int write_all(int file, std::string_view content) {
+int write_bytes(int file, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(file, content.data(), content.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return errno;
     content.remove_prefix(static_cast<std::size_t>(written));
   }
+  return 0;
+}
+
+// The same, down to the disk.
+int write_all(int file, std::string_view content) {
+  const int error = write_bytes(file, content);
+  if (error != 0) return error;
   return ::fsync(file) == 0 ? 0 : errno;
 }
 
@@ -61,7 +68,36 @@ std::string read_file(const std::filesystem::path& path) {
   return std::move(*content);
 }
 
-void write_file(const std::filesystem::path& path, std::string_view content) {
+namespace {
+
+// Where it leads to, if it is a link to something.
+std::filesystem::path behind_links(const std::filesystem::path& path) {
+  std::error_code nothing_there;
+  const std::filesystem::path target = std::filesystem::canonical(path, nothing_there);
+  return nothing_there ? path : target;
+}
+
+// A pipe or a terminal takes bytes, and cannot be put in another's place.
+bool is_stream(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  using enum std::filesystem::file_type;
+  return kind == character || kind == fifo || kind == socket;
+}
+
+void write_stream(const std::filesystem::path& path, std::string_view content) {
+  const int stream = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (stream < 0) fail(path, "cannot be written", errno);
+  const int error = write_bytes(stream, content);
+  ::close(stream);
+  if (error != 0) fail(path, "cannot be written", error);
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& given, std::string_view content) {
+  const std::filesystem::path path = behind_links(given);
+  if (is_stream(path)) return write_stream(path, content);
   std::filesystem::path partial = path;
   partial += ".partial";
   const int file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);

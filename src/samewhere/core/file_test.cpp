@@ -1,7 +1,9 @@
 #include <filesystem>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
@@ -86,6 +88,25 @@ TEST_F(FileTest, AFullDiskIsReportedAndTheOldFileStays) {
               AllOf(HasSubstr("map"), HasSubstr("No space left")));
   EXPECT_EQ(read_file(folder_ / "map"), "old");
   EXPECT_EQ(num_entries(), 1) << "no temporary file is left";
+}
+
+TEST_F(FileTest, OfALinkThatWhichItLeadsToIsWritten) {
+  write_file(folder_ / "kept", "old");
+  fs::create_symlink(folder_ / "kept", folder_ / "link");
+  write_file(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read_file(folder_ / "kept"), "new");
+  EXPECT_EQ(num_entries(), 2);
+}
+
+TEST_F(FileTest, APipeIsWrittenToAndStays) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = read_file(folder_ / "pipe"); });
+  write_file(folder_ / "pipe", "bytes");
+  reader.join();
+  EXPECT_EQ(read, "bytes");
+  EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));
 }
 
 TEST_F(FileTest, AFolderInTheWayOfAFileIsReported) {

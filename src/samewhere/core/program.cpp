@@ -1,3 +1,4 @@
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -24,8 +25,9 @@ int complain(const std::string& name, std::string message, int exit_code) {
 int run_program(const std::string& name, const std::function<int()>& work) noexcept {
   try {
     cv::setNumThreads(1);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
     spdlog::set_default_logger(
-        std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stderr_sink_st>()));
+        std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stderr_sink_mt>()));
     spdlog::set_pattern("%n: %l: %v");
     try {
       return work();

@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/pipeline/figures.hpp>
@@ -65,6 +66,7 @@ void MapSaver::save(const scene::MapVersion& map, const MapNews& news) {
   } catch (const core::InputError& error) {
     error_ = error.what();
     file_.reset();
+    spdlog::warn("{}; the run goes on, its map is no longer saved", *error_);
   }
 }
 
