@@ -15,6 +15,7 @@ struct MapCommand {
   std::string tum;
   std::string kitti;
   std::string g2o;
+  int session = -1;
 };
 
 void add_info(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
@@ -31,10 +32,15 @@ void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
   sub->add_option("--tum", command->tum, "measured frames: stamp tx ty tz qx qy qz qw");
   sub->add_option("--kitti", command->kitti, "the same frames, without stamps: 3 x 4 matrices");
   sub->add_option("--g2o", command->g2o, "keyframes, odometry and loops as a pose graph");
+  sub->add_option("--session", command->session,
+                  "of --tum and --kitti: which session's frames, 0 = the run that made the map; "
+                  "needed where there are several")
+      ->check(CLI::NonNegativeNumber);
   sub->require_option(1, 0);
   sub->callback([command] {
-    pipeline::export_map(scene::MapFile::open(command->file).load(),
-                         {command->ply, command->tum, command->kitti, command->g2o});
+    pipeline::export_map(
+        scene::MapFile::open(command->file).load(),
+        {command->ply, command->tum, command->kitti, command->g2o, command->session});
   });
 }
 
@@ -50,7 +56,8 @@ void add_map_command(CLI::App& app) {
   sub->footer(
       "Examples:\n"
       "  samewhere map runs/demo/map.sw info\n"
-      "  samewhere map runs/demo/map.sw export --ply points.ply --g2o graph.g2o");
+      "  samewhere map runs/demo/map.sw export --ply points.ply --g2o graph.g2o\n"
+      "  samewhere map office.sw export --tum second-run.tum --session 1");
 }
 
 }  // namespace samewhere::app

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/kitti_file.hpp>
 #include <samewhere/core/tum_file.hpp>
@@ -28,8 +31,7 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
                                            const scene::StoredMap& stored) {
   const auto& [map, extras] = stored;
   std::set<std::uint16_t> sessions;
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
-    sessions.insert(map.keyframes[i].view.frame.session());
+  for (const core::FramePose& frame : extras.frames) sessions.insert(frame.frame.session());
   const auto num_measured = std::count_if(extras.frames.begin(), extras.frames.end(),
                                           [](const core::FramePose& f) { return f.is_measured; });
   std::vector<report::Figure> figures = {
@@ -44,13 +46,46 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
   return figures;
 }
 
+namespace {
+
+// Of one session: stamps of several begin anew and may be the same.
+std::vector<core::FramePose> frames_of(const scene::StoredMap& stored, const MapExports& wanted) {
+  const std::vector<core::FramePose>& all = stored.extras.frames;
+  if (all.empty()) return {};
+  const int last = all.back().frame.session();
+  if (wanted.session > last || (wanted.session < 0 && last > 0)) {
+    throw core::InputError(fmt::format(
+        "--session = {}: the map holds frames of {} sessions, each with stamps of its own; "
+        "expected one of 0 to {}",
+        wanted.session < 0 ? "none" : std::to_string(wanted.session), last + 1, last));
+  }
+  std::vector<core::FramePose> frames;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(frames), [&](const auto& frame) {
+    return wanted.session < 0 || frame.frame.session() == wanted.session;
+  });
+  return frames;
+}
+
+// Keyframes are numbered anew without those that were culled, so that odometry leads from a number
+// to the next: that is how readers tell it from loops.
+std::string g2o_of(const scene::MapVersion& map) {
+  std::vector<long> names(map.keyframes.size(), -1);
+  long num_live = 0;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
+    if (is_live(map.keyframes[i])) names[i] = num_live++;
+  return optimize::g2o_text(correct::pose_graph_of(map, {}), names);
+}
+
+}  // namespace
+
 void export_map(const scene::StoredMap& stored, const MapExports& wanted) {
   if (!wanted.ply.empty()) core::write_file(wanted.ply, report::ply_bytes(points_of(stored.map)));
-  const core::Trajectory trajectory = trajectory_of(stored.map, stored.extras.frames);
-  if (!wanted.tum.empty()) core::write_file(wanted.tum, core::tum_text(trajectory));
-  if (!wanted.kitti.empty()) core::write_file(wanted.kitti, core::kitti_text(trajectory));
-  if (!wanted.g2o.empty())
-    core::write_file(wanted.g2o, optimize::g2o_text(correct::pose_graph_of(stored.map, {})));
+  if (!wanted.tum.empty() || !wanted.kitti.empty()) {
+    const core::Trajectory trajectory = trajectory_of(stored.map, frames_of(stored, wanted));
+    if (!wanted.tum.empty()) core::write_file(wanted.tum, core::tum_text(trajectory));
+    if (!wanted.kitti.empty()) core::write_file(wanted.kitti, core::kitti_text(trajectory));
+  }
+  if (!wanted.g2o.empty()) core::write_file(wanted.g2o, g2o_of(stored.map));
 }
 
 }  // namespace samewhere::pipeline

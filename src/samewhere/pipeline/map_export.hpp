@@ -21,9 +21,11 @@ struct MapExports {
   std::filesystem::path tum;    // measured frames, camera 0, with stamps
   std::filesystem::path kitti;  // the same frames, without
   std::filesystem::path g2o;    // keyframes, odometry and loops
+  int session = -1;             // of these frames; -1: the only one
 };
 
-// Each whole or not at all. Throws InputError if one cannot be written.
+// Each whole or not at all. Throws InputError if one cannot be written, or if frames are wanted and
+// there is no such session, or several and none was named.
 void export_map(const scene::StoredMap& stored, const MapExports& wanted);
 
 }  // namespace samewhere::pipeline
