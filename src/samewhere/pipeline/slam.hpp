@@ -48,6 +48,9 @@ class Slam {
   const std::vector<core::FramePose>& frames() const { return tracking_.frames(); }
   std::uint64_t describer_checksum() const { return loop_closing_.detector().describer_checksum(); }
 
+  // Why there is no pose, as long as there is none: of the views tried last.
+  std::string why_not_started() const { return tracking_.why_not_started(); }
+
   // From here on: after finish().
   const scene::MapVersion& map() const;
   // The judge's rows, and behind them what the pose graph made of them later.

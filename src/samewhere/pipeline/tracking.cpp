@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <samewhere/features/orb.hpp>
 #include <samewhere/pipeline/tracking.hpp>
 #include <samewhere/track/drift_model.hpp>
@@ -210,11 +212,20 @@ void Tracking::remember(const map::TrackedView& tracked) {
 std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
                                                 const features::View& view) {
   if (starter_) return start_by_motion(frame, view);
+  num_with_depth_ = map::num_with_depth(view);
   if (!map::can_start(view, config_.map)) return std::nullopt;
   mapping_.send(StartMap{view, frame.images[0]});
   give_up_poses();
   begin_tracking(view, map::num_with_depth(view));
   return last_;
+}
+
+std::string Tracking::why_not_started() const {
+  if (!starter_) {
+    return fmt::format("{} features with depth, expected {}", num_with_depth_,
+                       config_.map.min_landmarks);
+  }
+  return starter_->last_refusal().empty() ? "there is no second view" : starter_->last_refusal();
 }
 
 std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& frame,

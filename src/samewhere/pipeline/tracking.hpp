@@ -42,6 +42,8 @@ class Tracking {
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return frames_; }
   const core::Timings& timings() const { return timings_; }
+  // Why the views tried last did not start a map.
+  std::string why_not_started() const;
 
  private:
   // Where am I? Nothing: lost.
@@ -101,6 +103,7 @@ class Tracking {
   track::Tracker tracker_;
   PlaceFinder place_finder_;
   std::optional<track::Starter> starter_;  // one camera
+  int num_with_depth_ = 0;                 // features of the last view that might have started
   MappingLink& mapping_;
 
   std::uint16_t session_ = 0;

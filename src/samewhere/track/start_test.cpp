@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <samewhere/core/median.hpp>
 #include <samewhere/features/test_world.hpp>
@@ -219,8 +219,10 @@ TEST(Starter, WaitsForParallaxAndThenStartsFromTheFirstView) {
   const features::TestWorld world = features::test_world(4);
   Starter starter{StartSettings{}};
   EXPECT_FALSE(starter.offer(view_without_depth(world, 0, {}))) << "nothing to compare with";
+  EXPECT_EQ(starter.last_refusal(), "");
   EXPECT_FALSE(starter.offer(view_without_depth(world, 1, {core::exp_so3({0, 0.1, 0}), {0, 0, 0}})))
       << "a rotation";
+  EXPECT_THAT(starter.last_refusal(), testing::HasSubstr("median parallax 0.0"));
   const auto started = starter.offer(view_without_depth(world, 2, sideways(4)));
   ASSERT_TRUE(started);
   EXPECT_EQ(started->first.frame, core::FrameId(0));

@@ -10,6 +10,7 @@ std::optional<StartedPair> Starter::offer(const features::View& view) {
       forget();
       return started;
     }
+    last_refusal_ = start.error().reason;
     const bool is_too_late =
         static_cast<int>(between_.size()) >= settings_.start.max_waiting_frames;
     if (start.error().refusal != StartRefusal::kFewMatches && !is_too_late) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <samewhere/track/start.hpp>
 
@@ -23,11 +24,14 @@ class Starter {
   std::optional<StartedPair> offer(const features::View& view);
   // The view that was kept starts nothing any more.
   void forget();
+  // Why the last two views that were tried are no start; empty if none were.
+  const std::string& last_refusal() const { return last_refusal_; }
 
  private:
   StartSettings settings_;
   std::optional<features::View> first_;
   std::vector<features::View> between_;
+  std::string last_refusal_;
 };
 
 }  // namespace samewhere::track
