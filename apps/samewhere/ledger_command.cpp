@@ -16,6 +16,7 @@
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
 #include <samewhere/report/funnel.hpp>
+#include <samewhere/report/loops.hpp>
 #include <samewhere/report/pair_figure.hpp>
 #include <samewhere/report/table.hpp>
 
@@ -45,7 +46,7 @@ std::string lines_of(const core::Ledger& rows) {
   for (const core::LedgerRow& row : rows) {
     table.rows.push_back(
         {std::to_string(row.candidate.id.index()), std::to_string(row.candidate.query.index()),
-         std::to_string(row.candidate.match.index()), std::string(core::name_of(row.verdict)),
+         report::name_of_match(row.candidate), std::string(core::name_of(row.verdict)),
          std::string(core::stage_of(row.verdict))});
   }
   std::istringstream lines(report::as_text(table));
@@ -76,7 +77,7 @@ std::vector<report::Figure> figures_of(const core::LedgerRow& row) {
   const core::Evidence& evidence = core::evidence_of(row.verdict);
   std::vector<report::Figure> figures = {
       {"query / match", fmt::format("frame {} / frame {}", row.candidate.query.index(),
-                                    row.candidate.match.index())},
+                                    report::name_of_match(row.candidate))},
       {"verdict", fmt::format("{}, {}", core::name_of(row.verdict), core::stage_of(row.verdict))},
       {"why", core::reason_of(row.verdict)}};
   const auto& geometry = evidence.geometry;

@@ -1,8 +1,9 @@
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run.hpp>
 #include <samewhere/report/funnel.hpp>
+#include <samewhere/report/old_results.hpp>
 #include <samewhere/report/write.hpp>
 
 namespace samewhere::app {
@@ -87,24 +89,10 @@ void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::p
   fmt::print("{}\n", (folder / "report.html").string());
 }
 
-pipeline::MapPlan map_plan(const RunCommand& command, const std::filesystem::path& folder) {
-  if (command.map.empty()) return {.save = folder / "map.sw"};
-  return {.known = command.map, .is_known_fixed = command.localize};
-}
-
-// What an earlier run left in the folder would be taken for this one's. The map that the run starts
-// in may be one of these: it stays.
-void remove_old_results(const std::filesystem::path& folder, const std::filesystem::path& map) {
-  std::error_code no_map;
-  const bool is_map_here = std::filesystem::equivalent(folder / "map.sw", map, no_map);
-  for (const char* name :
-       {"trajectory.tum", "odometry.tum", "frames.csv", "map.ply", "matches.txt", "accepted.txt",
-        "loops.json", "config.yaml", "timing.json", "report.html", "map.sw", "map.sw-wal",
-        "map.sw-shm", "cloud.ply", "map.pgm", "map.yaml", "map.bt"}) {
-    if (is_map_here && std::string_view(name).starts_with("map.sw")) continue;
-    std::error_code ignored;  // a file that stays will be written over, or fail loudly then
-    std::filesystem::remove(folder / name, ignored);
-  }
+pipeline::MapPlan map_plan(const RunCommand& command, const std::filesystem::path& folder,
+                           std::function<void()> begin) {
+  if (command.map.empty()) return {.save = folder / "map.sw", .begin = std::move(begin)};
+  return {.known = command.map, .is_known_fixed = command.localize, .begin = std::move(begin)};
 }
 
 // Who runs a camera knows that frames may be lost.
@@ -129,13 +117,19 @@ int execute(const RunCommand& command, Work work) {
   auto source = pipeline::open_source(config);
   require_realtime_as_told(command, source->info().is_live);
   if (work == Work::kSlam) pipeline::require_slam_input(source->info(), config);
-  // only now, so that a bad source leaves no folder behind; and not later, so that a folder that
-  // cannot be written is found out before the work is done
-  core::make_writable_folder(folder);
-  remove_old_results(folder, command.map);
+  report::require_folder_for_results(folder, config.source);
+  // when source and map are known to be good: a bad one leaves no folder behind, nor does it cost
+  // what an earlier run left there
+  const auto begin = [&] {
+    core::make_writable_folder(folder);
+    report::remove_old_results(folder, command.map);
+    core::write_file(folder / "config.yaml", core::config_as_yaml(config));
+  };
+  if (work == Work::kRecognition) begin();
   const pipeline::RunOutcome outcome =
-      work == Work::kSlam ? pipeline::run_slam(std::move(source), config, map_plan(command, folder))
-                          : pipeline::run_recognition(std::move(source), config);
+      work == Work::kSlam
+          ? pipeline::run_slam(std::move(source), config, map_plan(command, folder, begin))
+          : pipeline::run_recognition(std::move(source), config);
   write(outcome, work, folder);
   print_outcome(outcome, folder);
   for (const auto& error : {outcome.record.input_error, outcome.map_error})

@@ -76,7 +76,14 @@ Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
 }  // namespace
 
 void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings& findings) {
-  const auto rows = report::final_rows(ledger);
+  auto rows = report::final_rows(ledger);
+  const auto own = std::stable_partition(rows.begin(), rows.end(), [](const core::LedgerRow* row) {
+    return row->candidate.match.session() == row->candidate.query.session();
+  });
+  findings.num_of_known_map = static_cast<int>(rows.end() - own);
+  findings.num_known_places = static_cast<int>(std::count_if(
+      own, rows.end(), [](const core::LedgerRow* row) { return core::is_loop(row->verdict); }));
+  rows.erase(own, rows.end());  // no truth knows the frames of another session
   findings.num_candidates = static_cast<int>(rows.size());
   findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
   findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
@@ -126,6 +133,8 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   const double scale = evaluation.ate ? evaluation.ate->scale : 1.0;
   evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory, 1.0, scale);
   evaluation.num_candidates = findings.num_candidates;
+  evaluation.num_of_known_map = findings.num_of_known_map;
+  evaluation.num_known_places = findings.num_known_places;
   evaluation.loops = evaluate::check_loops(findings.loops, truth, scale);
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
   evaluation.num_withdrawn = findings.num_withdrawn;
@@ -187,6 +196,11 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   figures.push_back(
       {"loops accepted: right / wrong / unknown",
        fmt::format("{} / {} / {}", loops.num_right, loops.num_wrong, loops.num_unknown)});
+  if (evaluation.num_of_known_map > 0) {
+    figures.push_back(
+        {"candidates of the known map / accepted",
+         fmt::format("{} / {}", evaluation.num_of_known_map, evaluation.num_known_places)});
+  }
   if (evaluation.num_impostors_matching) {
     figures.push_back({"of the wrong ones, impostors", std::to_string(loops.num_impostors)});
     figures.push_back({"impostors among the candidates with enough matches",

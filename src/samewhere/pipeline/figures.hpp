@@ -22,6 +22,8 @@ struct SlamFindings {
   core::Trajectory trajectory;  // measured poses only
   core::Trajectory odometry;    // before any correction
   int num_candidates = 0;
+  int num_of_known_map = 0;  // beside these: matches are frames of the map that the run started in
+  int num_known_places = 0;  // of those, accepted
   std::vector<evaluate::AcceptedLoop> loops;
   std::vector<core::FramePair> matching;  // candidates in which enough features matched
   bool is_scale_free = false;             // monocular: aligned with a scale
@@ -48,6 +50,8 @@ struct SlamEvaluation {
   double path_m = 0.0;                     // the true one, while there were poses
   std::optional<evaluate::RpeResult> rpe;  // over 1 s
   int num_candidates = 0;
+  int num_of_known_map = 0;
+  int num_known_places = 0;
   evaluate::LoopCheck loops;
   int num_refused_by_graph = 0;
   int num_withdrawn = 0;

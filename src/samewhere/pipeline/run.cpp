@@ -12,11 +12,10 @@
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/map_export.hpp>
-#include <samewhere/pipeline/map_saver.hpp>
+#include <samewhere/pipeline/mapped_slam.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/pipeline/run.hpp>
-#include <samewhere/pipeline/slam.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 
@@ -106,78 +105,15 @@ void drop_unused_thumbnails(report::RunRecord& record) {
   record.thumbnails = std::move(used);
 }
 
-// A Slam, in a known map or from nothing, and what keeps its map.
-class MappedSlam {
- public:
-  MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan& plan)
-      : config_(config), plan_(plan) {
-    const SlamHooks hooks{
-        .keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); }};
-    if (plan.known.empty()) {
-      slam_.emplace(config, depth_from, hooks);
-      if (!plan.save.empty()) saver_.emplace(plan.save, config, slam_->describer_checksum());
-      return;
-    }
-    using enum scene::MapAccess;
-    known_ = scene::MapFile::open(plan.known, plan.is_known_fixed ? kRead : kExtend);
-    const scene::StoredMap stored = known_->load();
-    if (stored.map.keyframes.empty())
-      throw core::InputError(plan.known.string() + ": is a map without a keyframe");
-    slam_.emplace(config, stored, plan.is_known_fixed ? Slam::Use::kLocalize : Slam::Use::kExtend,
-                  hooks);
+// Of frames of the known map that the ledger speaks of.
+void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& record) {
+  scene::MapFile file = scene::MapFile::open(map);
+  for (const core::LedgerRow& row : record.ledger) {
+    const core::FrameId match = row.candidate.match;
+    if (match.session() == row.candidate.query.session() || record.thumbnails.contains(match))
+      continue;
+    if (const auto jpeg = file.thumbnail(match)) record.thumbnails[match] = *jpeg;
   }
-  MappedSlam(const MappedSlam&) = delete;
-  MappedSlam& operator=(const MappedSlam&) = delete;
-
-  const Slam& slam() const { return *slam_; }
-
-  // Of keyframes, once it is finished.
-  std::map<core::FrameId, std::string> take_thumbnails() { return std::move(thumbnails_); }
-
-  void feed(core::Frame& frame) {
-    frame.id = core::FrameId(frame.id.index(), slam_->session());
-    if (known_) take_known(*frame.rig);
-    slam_->feed(frame);
-  }
-
-  // Closes the file. What could not be saved, if anything.
-  std::optional<std::string> finish() {
-    slam_->finish();
-    if (!saver_) return std::nullopt;
-    const std::optional<std::string> error = saver_->error();
-    saver_.reset();
-    return error;
-  }
-
- private:
-  // Called in mapping's thread.
-  void keep(const scene::MapVersion& map, const MapNews& news) {
-    for (const auto& thumbnail : news.thumbnails) thumbnails_[thumbnail.frame] = thumbnail.jpeg;
-    if (saver_) saver_->save(map, news);
-  }
-
-  // The first frame says which camera it is.
-  void take_known(const core::Rig& rig) {
-    known_->require_same_settings(map_header(config_, rig, slam_->describer_checksum()));
-    if (!plan_.is_known_fixed) saver_.emplace(std::move(*known_));
-    known_.reset();
-  }
-
-  Config config_;
-  MapPlan plan_;
-  std::optional<scene::MapFile> known_;  // until the first frame
-  std::optional<MapSaver> saver_;
-  std::map<core::FrameId, std::string> thumbnails_;  // written in mapping's thread
-  std::optional<Slam> slam_;                         // last: its threads end before what they use
-};
-
-// The rows about two frames of this run: others speak of a session whose frames are not here.
-core::Ledger ledger_of_session(const Slam& slam) {
-  core::Ledger rows;
-  std::copy_if(
-      slam.ledger().begin(), slam.ledger().end(), std::back_inserter(rows),
-      [&](const core::LedgerRow& row) { return row.candidate.match.session() == slam.session(); });
-  return rows;
 }
 
 void note_first_pose(const Slam& slam, report::RunRecord& record) {
@@ -188,7 +124,7 @@ void note_first_pose(const Slam& slam, report::RunRecord& record) {
 void record_slam(const Slam& slam, const std::vector<std::string>& names,
                  report::RunRecord& record) {
   record_frames(slam, names, record);
-  record.ledger = ledger_of_session(slam);
+  record.ledger = slam.ledger();
   record.points = points_of(slam.map());
   record.odometry = odometry_of(slam.map(), slam.frames());
   record.timings.add(slam.timings());
@@ -222,14 +158,17 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   report::RunRecord& record = outcome.record;
   record.thumbnails = mapped.take_thumbnails();
   record_slam(slam, names, record);
-  SlamFindings findings = findings_of(record, is_monocular);
+  if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
+  SlamFindings findings = findings_of(record, !mapped.is_metric());
   for (const int num_edges : kChains) {
-    if (!is_monocular)
+    if (mapped.is_metric())
       findings.odometry_chains[num_edges] =
           odometry_chains_of(slam.map(), slam.session(), num_edges);
   }
   const SlamEvaluation evaluation = evaluate_slam(findings, truth);
   record.figures = figures_of(evaluation);
+  if (evaluation.num_measured == 0 && plan.known.empty())
+    record.figures.push_back({"no start, at the end", slam.why_not_started()});
   record.figures.push_back(
       {"keyframes / landmarks",
        fmt::format("{} / {}", num_live(slam.map().keyframes), num_live(slam.map().landmarks))});

@@ -7,6 +7,7 @@
 
 #include <samewhere/core/source.hpp>
 #include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/mapped_slam.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/record.hpp>
 
@@ -20,13 +21,6 @@ struct RunOutcome {
   std::vector<report::ScoredPair> accepted;
   // Why the map file lacks what came last; everything else is as it should be.
   std::optional<std::string> map_error;
-};
-
-// What a run does with map files. Empty paths: nothing.
-struct MapPlan {
-  std::filesystem::path save;  // a new file for the map, which grows with it, a commit per keyframe
-  std::filesystem::path known;  // a map to start in, lost; then nothing is saved elsewhere
-  bool is_known_fixed = false;  // localise only; else the known map grows
 };
 
 // SLAM over a source, read one frame ahead in its own thread, with a progress line on stderr. Of a

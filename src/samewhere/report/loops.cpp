@@ -67,11 +67,18 @@ Json pose_of(const core::Verdict& verdict) {
   return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
+void add_sessions(Json& entry, const core::Candidate& candidate) {
+  entry["query_session"] = candidate.query.session();
+  entry["match_session"] = candidate.match.session();
+}
+
 Json entry_of(const core::LedgerRow& row) {
   Json entry = {{"query", row.candidate.query.index()},    {"match", row.candidate.match.index()},
                 {"verdict", core::name_of(row.verdict)},   {"stage", core::stage_of(row.verdict)},
                 {"reason", core::reason_of(row.verdict)},  {"scores", scores_of(row.verdict)},
                 {"match_from_query", pose_of(row.verdict)}};
+  const core::Candidate& candidate = row.candidate;
+  if (candidate.query.session() != candidate.match.session()) add_sessions(entry, candidate);
   if (row.candidate.is_foretold) entry["is_foretold"] = true;
   if (row.candidate.is_lost) entry["is_lost"] = true;
   const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
@@ -97,6 +104,12 @@ std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict) {
   return match_from_query;
 }
 
+std::string name_of_match(const core::Candidate& candidate) {
+  const std::string index = std::to_string(candidate.match.index());
+  if (candidate.match.session() == candidate.query.session()) return index;
+  return fmt::format("{} of session {}", index, candidate.match.session());
+}
+
 std::string loops_json(const core::Ledger& ledger) {
   Json candidates = Json::array();
   for (const core::LedgerRow* row : final_rows(ledger)) candidates.push_back(entry_of(*row));
@@ -106,11 +119,7 @@ std::string loops_json(const core::Ledger& ledger) {
 
 std::string ledger_row_json(const core::LedgerRow& row) {
   Json entry = entry_of(row);
-  const core::FrameId query = row.candidate.query;
-  if (query.session() != 0) {
-    entry["query_session"] = query.session();
-    entry["match_session"] = row.candidate.match.session();
-  }
+  if (row.candidate.query.session() != 0) add_sessions(entry, row.candidate);
   return dumped(entry, -1);
 }
 

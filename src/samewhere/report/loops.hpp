@@ -12,11 +12,15 @@ namespace samewhere::report {
 // Nothing without a pose or where it is not finite.
 std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict);
 
+// How a person is told of the match: its index, and of which session it is if not of the query's.
+std::string name_of_match(const core::Candidate& candidate);
+
 // loops.json, version 1: for each candidate its last verdict with stage, reason, every score of its
 // Evidence by name, and match_from_query as [tx, ty, tz, qx, qy, qz, qw] or null. Scores that are
 // not finite are left out. "is_foretold": true where no search found the candidate,
 // "is_lost": true where nobody knew where the view was taken; "is_by_hand": true where a person
-// accepted it.
+// accepted it; "query_session" and "match_session" where the match is a frame of an earlier
+// session, one of the map that the run started in.
 std::string loops_json(const core::Ledger& ledger);
 
 // One row as an entry of loops.json, on one line; with "query_session" and "match_session" if the

@@ -47,7 +47,8 @@ class Entry {
 
  private:
   core::FrameId frame(const char* name) const {
-    return core::FrameId(json_.at(name).get<std::uint64_t>());
+    return core::FrameId(json_.at(name).get<std::uint64_t>(),
+                         json_.value(std::string(name) + "_session", std::uint16_t{0}));
   }
 
   std::optional<double> score(const char* name) const {

@@ -46,6 +46,16 @@ TEST_F(LoopsRead, WhatWasWrittenIsWrittenAgain) {
   EXPECT_EQ(found[34].candidate.id, core::CandidateId(34)) << "by position";
 }
 
+TEST_F(LoopsRead, AMatchOfAnEarlierSessionStaysOne) {
+  core::LedgerRow row = refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kMatches,
+                                    evidence(0.8, 10, 0), "too few");
+  row.candidate.query = core::FrameId(9, 3);
+  const core::Ledger found = read(loops_json({row}));
+  EXPECT_EQ(found.at(0).candidate.query, core::FrameId(9, 3));
+  EXPECT_EQ(found.at(0).candidate.match, core::FrameId(2, 0));
+  EXPECT_EQ(name_of_match(found.at(0).candidate), "2 of session 0");
+}
+
 TEST_F(LoopsRead, APoseThatOneViewAloneFindsStaysApartWithoutEnd) {
   core::LedgerRow row = refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kAgreement,
                                     evidence(0.8, 100, 50), "only one view");

@@ -8,6 +8,7 @@
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/html_text.hpp>
 #include <samewhere/report/jpeg.hpp>
+#include <samewhere/report/loops.hpp>
 #include <samewhere/report/pairs.hpp>
 
 namespace samewhere::report {
@@ -20,15 +21,16 @@ std::string name_of_frame(const RunRecord& record, core::FrameId frame) {
   return "";
 }
 
-std::string view(const RunRecord& record, core::FrameId frame) {
+// `called` is how a person is told of the frame.
+std::string view(const RunRecord& record, core::FrameId frame, const std::string& called) {
   std::string image;
   const auto thumbnail = record.thumbnails.find(frame);
   if (thumbnail != record.thumbnails.end())
     image = fmt::format("<img src=\"{}\" alt=\"frame {}\" loading=\"lazy\">",
-                        jpeg_data_uri(thumbnail->second), frame.index());
+                        jpeg_data_uri(thumbnail->second), called);
   return fmt::format("<div class=\"view{}\" title=\"{}\">{}<span>{}</span></div>",
                      image.empty() ? " missing" : "", escaped(name_of_frame(record, frame)), image,
-                     frame.index());
+                     called);
 }
 
 std::string verdict_label(const core::Verdict& verdict) {
@@ -42,9 +44,9 @@ std::string card(const RunRecord& record, const core::LedgerRow& row) {
   return fmt::format(
       "<figure class=\"pair\"><div class=\"views\">{}{}</div><figcaption><div class=\"what\">{}"
       "<span class=\"scores\">{}</span></div><p>{}</p></figcaption></figure>\n",
-      view(record, row.candidate.query), view(record, row.candidate.match),
-      verdict_label(row.verdict), scores_of(core::evidence_of(row.verdict)),
-      escaped(core::reason_of(row.verdict)));
+      view(record, row.candidate.query, std::to_string(row.candidate.query.index())),
+      view(record, row.candidate.match, name_of_match(row.candidate)), verdict_label(row.verdict),
+      scores_of(core::evidence_of(row.verdict)), escaped(core::reason_of(row.verdict)));
 }
 
 // Inliers, then similarity (the least where it is no number, so that the order stays one).

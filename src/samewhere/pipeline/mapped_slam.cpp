@@ -1,0 +1,81 @@
+#include <utility>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/pipeline/mapped_slam.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+// A map made without depth has lengths of its own, which no sensor knows; one with depth grows by
+// depth alone.
+void require_same_depth(const MapPlan& plan, const scene::MapVersion& known, DepthFrom depth_from) {
+  const bool has_map_depth = !scene::is_without_depth(known);
+  const bool has_run_depth = depth_from == DepthFrom::kSensor;
+  if (has_run_depth && !has_map_depth) {
+    throw core::InputError(plan.known.string() +
+                           ": the map was made without depth, in lengths of its own, and this run "
+                           "has depth; expected one without (--set input.depth=false)");
+  }
+  if (has_map_depth && !has_run_depth && !plan.is_known_fixed) {
+    throw core::InputError(plan.known.string() +
+                           ": the map was made with depth, which this run lacks and could not add "
+                           "to it; expected --localize");
+  }
+}
+
+}  // namespace
+
+MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan& plan)
+    : config_(config), plan_(plan), is_metric_(depth_from == DepthFrom::kSensor) {
+  const SlamHooks hooks{
+      .keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); }};
+  if (plan.known.empty()) {
+    slam_.emplace(config, depth_from, hooks);
+    if (!plan.save.empty()) saver_.emplace(plan.save, config, slam_->describer_checksum());
+    return;
+  }
+  using enum scene::MapAccess;
+  known_ = scene::MapFile::open(plan.known, plan.is_known_fixed ? kRead : kExtend);
+  const scene::StoredMap stored = known_->load();
+  if (stored.map.keyframes.empty())
+    throw core::InputError(plan.known.string() + ": is a map without a keyframe");
+  require_same_depth(plan, stored.map, depth_from);
+  is_metric_ = !scene::is_without_depth(stored.map);
+  slam_.emplace(config, stored, plan.is_known_fixed ? Slam::Use::kLocalize : Slam::Use::kExtend,
+                hooks);
+}
+
+void MappedSlam::feed(core::Frame& frame) {
+  frame.id = core::FrameId(frame.id.index(), slam_->session());
+  if (known_) take_known(*frame.rig);
+  begin();
+  slam_->feed(frame);
+}
+
+std::optional<std::string> MappedSlam::finish() {
+  begin();
+  slam_->finish();
+  if (!saver_) return std::nullopt;
+  const std::optional<std::string> error = saver_->error();
+  saver_.reset();
+  return error;
+}
+
+void MappedSlam::begin() {
+  if (auto begin = std::exchange(plan_.begin, {})) begin();
+}
+
+// Called in mapping's thread.
+void MappedSlam::keep(const scene::MapVersion& map, const MapNews& news) {
+  for (const auto& thumbnail : news.thumbnails) thumbnails_[thumbnail.frame] = thumbnail.jpeg;
+  if (saver_) saver_->save(map, news);
+}
+
+// The first frame says which camera it is.
+void MappedSlam::take_known(const core::Rig& rig) {
+  known_->require_same_settings(map_header(config_, rig, slam_->describer_checksum()));
+  if (!plan_.is_known_fixed) saver_.emplace(std::move(*known_));
+  known_.reset();
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <samewhere/pipeline/map_saver.hpp>
+#include <samewhere/pipeline/slam.hpp>
+#include <samewhere/scene/map_file.hpp>
+
+namespace samewhere::pipeline {
+
+// What a run does with map files. Empty paths: nothing.
+struct MapPlan {
+  std::filesystem::path save;  // a new file for the map, which grows with it, a commit per keyframe
+  std::filesystem::path known;  // a map to start in, lost; then nothing is saved elsewhere
+  bool is_known_fixed = false;  // localise only; else the known map grows
+  // Called once, when the known map, if any, was read and fits the first frame, or the source has
+  // none: nothing is written before. May be empty.
+  std::function<void()> begin = {};
+};
+
+// A Slam, in a known map or from nothing, and what keeps its map.
+class MappedSlam {
+ public:
+  // Throws InputError if the known map cannot be used: it is none, is being written to, or differs
+  // from the run in where depth comes from.
+  MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan& plan);
+  MappedSlam(const MappedSlam&) = delete;
+  MappedSlam& operator=(const MappedSlam&) = delete;
+
+  const Slam& slam() const { return *slam_; }
+  // Whether lengths are metres: somebody has measured depth, this run or those that made the map.
+  bool is_metric() const { return is_metric_; }
+
+  // Of keyframes, once it is finished.
+  std::map<core::FrameId, std::string> take_thumbnails() { return std::move(thumbnails_); }
+
+  // As Slam::feed(); the frame gets its session. Throws InputError if the known map was made with
+  // other settings or another camera.
+  void feed(core::Frame& frame);
+
+  // Closes the file. What could not be saved, if anything.
+  std::optional<std::string> finish();
+
+ private:
+  void begin();
+  void keep(const scene::MapVersion& map, const MapNews& news);
+  void take_known(const core::Rig& rig);
+
+  Config config_;
+  MapPlan plan_;
+  bool is_metric_;
+  std::optional<scene::MapFile> known_;  // until the first frame
+  std::optional<MapSaver> saver_;
+  std::map<core::FrameId, std::string> thumbnails_;  // written in mapping's thread
+  std::optional<Slam> slam_;                         // last: its threads end before what they use
+};
+
+}  // namespace samewhere::pipeline
