@@ -88,7 +88,8 @@ void print_calibration(const geometry::Calibration& found, const Views& views) {
   }
   const core::PinholeRadtan& c = found.camera;
   fmt::print("  {:6.3f}  all {} pictures\n\n", found.rmse_px, views.names.size());
-  fmt::print("fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px\n", c.fx_px, c.fy_px, c.cx_px, c.cy_px);
+  fmt::print("fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px, fx and fy to {:.1f} %\n", c.fx_px,
+             c.fy_px, c.cx_px, c.cy_px, 100.0 * found.focal_sd_ratio);
   fmt::print("k1 {:.4f}  k2 {:.4f}  p1 {:.5f}  p2 {:.5f}\n\n", c.k1, c.k2, c.p1, c.p2);
 }
 

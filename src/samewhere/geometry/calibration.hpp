@@ -30,11 +30,13 @@ struct Calibration {
   core::PinholeRadtan camera;        // k3 stays 0: boards hardly reach where it would show
   double rmse_px = 0.0;              // reprojection error of all corners
   std::vector<double> view_rmse_px;  // of each view's
+  double focal_sd_ratio = 0.0;       // standard deviation of fx or fy, the larger share of it
 };
 
 // The camera that saw the board in all views, each the corners of one picture of `size_px`: Zhang's
-// method (2000), refined with k1 k2 p1 p2. Throws InputError for fewer than 3 views, or if the
-// boards of all views are nearly parallel: then no focal length is wrong.
+// method (2000), refined with k1 k2 p1 p2. Throws InputError for fewer than 3 views; if the boards
+// of all views are nearly parallel, for then no focal length is wrong; if fx and fy are not known
+// to 3 % (standard deviation); and if the field of view is that of no such lens (camera.hpp).
 Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Point2f>>& views,
                       const cv::Size& size_px);
 

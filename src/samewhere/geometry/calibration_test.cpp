@@ -44,13 +44,25 @@ std::vector<core::Rigid3> tilted_views() {
 }
 
 // What a perfect detector would find.
-std::vector<cv::Point2f> projected(const core::Rigid3& camera_from_this_board) {
+std::vector<cv::Point2f> projected(const core::Rigid3& camera_from_this_board,
+                                   const core::PinholeRadtan& camera = kCamera) {
   std::vector<cv::Point2f> pixels;
   for (const cv::Point3f& corner : corners_in_board(kBoard)) {
     const auto pixel =
-        project(kCamera, camera_from_this_board * Eigen::Vector3d(corner.x, corner.y, corner.z));
+        project(camera, camera_from_this_board * Eigen::Vector3d(corner.x, corner.y, corner.z));
     pixels.emplace_back(static_cast<float>(pixel.value().x()),
                         static_cast<float>(pixel.value().y()));
+  }
+  return pixels;
+}
+
+// What a detector would find that errs by `noise_px` (standard deviation) along rows and columns.
+std::vector<cv::Point2f> measured(const core::Rigid3& camera_from_this_board, double noise_px,
+                                  core::Random& random) {
+  std::vector<cv::Point2f> pixels = projected(camera_from_this_board);
+  for (cv::Point2f& pixel : pixels) {
+    pixel.x += static_cast<float>(noise_px * random.gaussian());
+    pixel.y += static_cast<float>(noise_px * random.gaussian());
   }
   return pixels;
 }
@@ -129,6 +141,56 @@ TEST(Calibration, ParallelBoardsAreRefusedHoweverMany) {
   EXPECT_THAT(refusal(facing), HasSubstr("expected at least 10"));
   EXPECT_THAT(refusal(tilted), HasSubstr("expected at least 10"));
   EXPECT_THAT(refusal({facing[0], facing[0], facing[0]}), HasSubstr("expected at least 10"));
+}
+
+// Noise alone makes boards that face the camera look tilted, by 4 to 80 degrees: what the fit says
+// of its own tilt is no sign of sound views.
+TEST(Calibration, BoardsThatFaceTheCameraAreRefusedWhateverTheNoise) {
+  for (int seed = 0; seed < 10; ++seed) {
+    for (const double noise_px : {0.05, 0.3, 1.0}) {
+      core::Random random(static_cast<std::uint64_t>(seed));
+      std::vector<std::vector<cv::Point2f>> views;
+      for (int i = 0; i < 12; ++i) {
+        const Eigen::Vector3d middle_m(random.uniform(-0.06, 0.06), random.uniform(-0.05, 0.05),
+                                       random.uniform(0.3, 0.5));
+        views.push_back(measured(camera_from_board({0.0, 0.0, random.uniform(-0.3, 0.3)}, middle_m),
+                                 noise_px, random));
+      }
+      EXPECT_THAT(refusal(views), testing::AnyOf(HasSubstr("expected to 3 % or better"),
+                                                 HasSubstr("expected at least 10")))
+          << "seed " << seed << ", noise " << noise_px;
+    }
+  }
+}
+
+TEST(Calibration, TiltedBoardsPassWithAWideMarginAndTheirErrorIsForetold) {
+  double sum_squares = 0.0;
+  double sum_foretold = 0.0;
+  for (int seed = 0; seed < 20; ++seed) {
+    core::Random random(static_cast<std::uint64_t>(seed));
+    std::vector<std::vector<cv::Point2f>> views;
+    for (const core::Rigid3& pose : tilted_views()) views.push_back(measured(pose, 0.3, random));
+    const Calibration found = calibrate(kBoard, views, {640, 480});
+    EXPECT_LT(found.focal_sd_ratio, 0.01) << "seed " << seed;
+    const double error_ratio = found.camera.fx_px / kCamera.fx_px - 1.0;
+    sum_squares += error_ratio * error_ratio;
+    sum_foretold += found.focal_sd_ratio * found.focal_sd_ratio;
+  }
+  EXPECT_GT(sum_squares, 0.4 * sum_foretold);
+  EXPECT_LT(sum_squares, 2.0 * sum_foretold);
+}
+
+TEST(Calibration, AFieldOfViewThatNoSuchLensHasIsRefused) {
+  core::PinholeRadtan telescope = kCamera;
+  telescope.fx_px *= 10.0;
+  telescope.fy_px *= 10.0;
+  std::vector<std::vector<cv::Point2f>> views;
+  for (core::Rigid3 pose : tilted_views()) {
+    pose.translation.z() += 10.0 * 0.3;
+    views.push_back(projected(pose, telescope));
+  }
+  EXPECT_THAT(refusal(views),
+              testing::AllOf(HasSubstr("field of view of 7."), HasSubstr("expected 10 to 150")));
 }
 
 TEST(Calibration, APictureWithoutTheBoardHasNoCorners) {

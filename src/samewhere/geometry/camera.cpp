@@ -1,3 +1,6 @@
+#include <cmath>
+
+#include <samewhere/core/errors.hpp>
 #include <samewhere/geometry/camera.hpp>
 
 namespace samewhere::geometry {
@@ -104,6 +107,15 @@ Eigen::Matrix3d calibration_matrix(const core::Camera& camera) {
 double focal_px(const core::Camera& camera) {
   const PinholeRadtan& c = pinhole(camera);
   return 0.5 * (c.fx_px + c.fy_px);
+}
+
+double horizontal_field_of_view_rad(const core::Camera& camera) {
+  const PinholeRadtan& c = pinhole(camera);
+  core::require(c.width_px > 0, "a camera with a field of view knows the width of its pictures");
+  // half a pixel more on both sides: pixels are as wide as they are apart
+  const double left_rad = std::atan((c.cx_px + 0.5) / c.fx_px);
+  const double right_rad = std::atan((c.width_px - 0.5 - c.cx_px) / c.fx_px);
+  return left_rad + right_rad;
 }
 
 }  // namespace samewhere::geometry

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -35,5 +36,14 @@ Eigen::Matrix3d calibration_matrix(const core::Camera& camera);
 
 // Mean focal length: converts small angles to pixels.
 double focal_px(const core::Camera& camera);
+
+// Angle between what an ideal pinhole of the same intrinsics sees at the left and at the right edge
+// of the picture, rad. Only of a camera that knows the width of its pictures.
+double horizontal_field_of_view_rad(const core::Camera& camera);
+
+// From a long telephoto lens to the widest that a pinhole with radial distortion describes. What
+// lies outside is far more often a mistake than a lens.
+inline constexpr double kMinFieldOfView_rad = 10.0 * std::numbers::pi / 180.0;
+inline constexpr double kMaxFieldOfView_rad = 150.0 * std::numbers::pi / 180.0;
 
 }  // namespace samewhere::geometry

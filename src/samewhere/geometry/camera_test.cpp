@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include <samewhere/core/random.hpp>
@@ -43,6 +45,15 @@ TEST(Camera, WhatIsBehindIsNotSeen) {
   EXPECT_FALSE(project(strong_camera(), {0.0, 0.0, -1.0}));
   EXPECT_FALSE(project(strong_camera(), {1.0, 0.0, 0.0}));
   EXPECT_FALSE(project_undistorted(strong_camera(), {0.0, 0.0, -1.0}));
+}
+
+TEST(Camera, TheFieldOfViewReachesFromEdgeToEdge) {
+  constexpr double kRight_rad = std::numbers::pi / 2.0;
+  EXPECT_NEAR(horizontal_field_of_view_rad(core::PinholeRadtan{640, 480, 320, 320, 319.5, 239.5}),
+              kRight_rad, 1e-12);
+  // a centre at the left edge: all of it lies on the right
+  EXPECT_NEAR(horizontal_field_of_view_rad(core::PinholeRadtan{640, 480, 640, 640, -0.5, 239.5}),
+              kRight_rad / 2.0, 1e-12);
 }
 
 TEST(Camera, BearingsAreUnitVectorsOfTheIdealPixel) {
