@@ -101,9 +101,7 @@ void execute(const CalibrateCommand& command) {
   const geometry::Calibration found = geometry::calibrate(board, views.corners, views.size_px);
   print_calibration(found, views);
   core::write_file(command.out,
-                   fmt::format("# {} x {} pixels, {} pictures of a board, {:.3f} px "
-                               "RMS\n{}",
-                               views.size_px.width, views.size_px.height, views.names.size(),
+                   fmt::format("# {} pictures of a board, {:.3f} px RMS\n{}", views.names.size(),
                                found.rmse_px, input::camera_file_text(found.camera)));
   fmt::print("{}\n", command.out);
 }
@@ -126,6 +124,9 @@ void add_calibrate_command(CLI::App& app) {
   sub->footer(
       "Example:\n"
       "  samewhere calibrate boards/ --board 9x6 --square 0.025 --out camera.txt\n"
+      "The file: the 3 rows of the camera matrix, k1 k2 p1 p2 k3, width height. Pictures of "
+      "another "
+      "size are refused with it.\n"
       "Take ten pictures or more; tilt the board differently in each and bring it to the corners "
       "of "
       "the picture.");

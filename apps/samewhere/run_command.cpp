@@ -155,8 +155,10 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       ->required();
   sub->add_option("--out", command->out,
                   "folder for the results; without it runs/NAME, never overwriting");
-  sub->add_option("--camera", command->camera,
-                  "camera file, as `samewhere calibrate` writes it; without it the source's own");
+  sub->add_option(
+      "--camera", command->camera,
+      "camera file, as `samewhere calibrate` writes it: 3 rows of the camera matrix, then, "
+      "where known, k1 k2 p1 p2 k3 and width height; without it the source's own");
   sub->add_flag("--realtime", command->is_realtime,
                 "for a camera: always the newest frame; says how many were dropped");
   add_config_options(*sub, command->config);

@@ -64,6 +64,8 @@ TEST_F(InputCommands, CalibrateWritesTheCameraThatRunReads) {
   const core::PinholeRadtan camera = input::read_camera_file(path("camera.txt"));
   EXPECT_NEAR(camera.fx_px, 260.0, 2.6);
   EXPECT_NEAR(camera.cx_px, 161.0, 2.0);
+  EXPECT_EQ(camera.width_px, 320);
+  EXPECT_EQ(camera.height_px, 240);
   expect_one_line(
       run("calibrate " + quoted(path("boards")) + " --board 5by4 --square 0.03 --out x"),
       "--board 5by4: expected COLUMNSxROWS");

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,6 +66,51 @@ TEST_F(CameraFile, WhatIsWrittenIsReadToTheLastDigit) {
   EXPECT_EQ(read.k3, camera.k3);
 }
 
+TEST_F(CameraFile, TheSizeOfItsPicturesMayFollowWithOrWithoutDistortion) {
+  folder_.write("camera.txt", "500 0 320\n0 500 240\n0 0 1\n640 480\n");
+  core::PinholeRadtan camera = read_camera_file(folder_.at("camera.txt"));
+  EXPECT_EQ(camera.width_px, 640);
+  EXPECT_EQ(camera.height_px, 480);
+  EXPECT_EQ(camera.k1, 0.0);
+  camera.k1 = 0.25;
+  folder_.write("written.txt", camera_file_text(camera));
+  camera = read_camera_file(folder_.at("written.txt"));
+  EXPECT_EQ(camera.width_px, 640);
+  EXPECT_EQ(camera.height_px, 480);
+  EXPECT_EQ(camera.k1, 0.25);
+}
+
+TEST_F(CameraFile, PicturesOfAnotherSizeAreRefusedWithBothSizes) {
+  const auto read_for = [&](const cv::Size& size_px) {
+    return complaint([&] {
+      const auto camera = read_camera_file_for(folder_.at("camera.txt"), size_px, "walk/7.png");
+      EXPECT_EQ(camera.width_px, size_px.width);
+    });
+  };
+  folder_.write("camera.txt", "500 0 320\n0 500 240\n0 0 1\n640 480\n");
+  EXPECT_EQ(read_for({640, 480}), "no error");
+  EXPECT_THAT(read_for({1280, 960}),
+              AllOf(HasSubstr("camera.txt: wrong calibration"), HasSubstr("640 x 480"),
+                    HasSubstr("walk/7.png is 1280 x 960")));
+  EXPECT_THAT(read_for({640, 481}), HasSubstr("walk/7.png is 640 x 481"));
+  // files of old do not say it
+  folder_.write("camera.txt", "500 0 320\n0 500 240\n0 0 1\n");
+  EXPECT_EQ(read_for({1280, 960}), "no error");
+}
+
+TEST_F(CameraFile, AFieldOfViewThatHardlyALensHasIsWarnedOf) {
+  const auto said_of = [&](const std::string& focal_px) {
+    folder_.write("camera.txt", fmt::format("{0} 0 320\n0 {0} 240\n0 0 1\n", focal_px));
+    testing::internal::CaptureStdout();
+    read_camera_file_for(folder_.at("camera.txt"), {640, 480}, "1.png");
+    return testing::internal::GetCapturedStdout();
+  };
+  EXPECT_EQ(said_of("500"), "");
+  EXPECT_EQ(said_of("3600"), "");
+  EXPECT_THAT(said_of("28171"), AllOf(HasSubstr("camera.txt"), HasSubstr("of 1.3 degrees")));
+  EXPECT_THAT(said_of("50"), AllOf(HasSubstr("camera.txt"), HasSubstr("expected 10 to 150")));
+}
+
 TEST_F(CameraFile, WhatIsNoCameraMatrixIsNamedWithItsLine) {
   EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n"), HasSubstr("found 2 rows"));
   EXPECT_THAT(complaint_about(""), HasSubstr("found 0 rows"));
@@ -78,6 +124,13 @@ TEST_F(CameraFile, WhatIsNoCameraMatrixIsNamedWithItsLine) {
   EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n0 0 2\n"), HasSubstr("expected 0 0 1"));
   EXPECT_THAT(complaint_about("500 0 320\n0 500 240\n0 0 1\n0.1 0.2 0 0\n"),
               AllOf(HasSubstr("line 4"), HasSubstr("k1 k2 p1 p2 k3")));
+  const std::string matrix = "500 0 320\n0 500 240\n0 0 1\n";
+  EXPECT_THAT(complaint_about(matrix + "640 480\n0.1 0.2 0 0 0\n"),
+              AllOf(HasSubstr("line 5"), HasSubstr("found 5 values, expected 2")));
+  EXPECT_THAT(complaint_about(matrix + "0 480\n"),
+              AllOf(HasSubstr("line 4"), HasSubstr("found 0 480"), HasSubstr("whole pixels")));
+  EXPECT_THAT(complaint_about(matrix + "640.5 480\n"), HasSubstr("whole pixels"));
+  EXPECT_THAT(complaint_about(matrix + "0 0 0 0 0\n640 480\n1\n"), HasSubstr("found 6 rows"));
 }
 
 }  // namespace

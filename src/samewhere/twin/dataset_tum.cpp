@@ -26,9 +26,9 @@ std::string with_header(const char* what, const std::string& name, const char* c
 }
 
 std::string camera_text(const core::PinholeRadtan& camera) {
-  return fmt::format("{} 0 {}\n0 {} {}\n0 0 1\n{} {} {} {} {}\n", camera.fx_px, camera.cx_px,
+  return fmt::format("{} 0 {}\n0 {} {}\n0 0 1\n{} {} {} {} {}\n{} {}\n", camera.fx_px, camera.cx_px,
                      camera.fy_px, camera.cy_px, camera.k1, camera.k2, camera.p1, camera.p2,
-                     camera.k3);
+                     camera.k3, camera.width_px, camera.height_px);
 }
 
 void add_picture(const PartialFolder& out, const char* folder, const core::Frame& frame,
