@@ -5,6 +5,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/input/camera_file.hpp>
@@ -38,6 +39,37 @@ std::unique_ptr<VideoDecoder> open_decoder(const path& video, bool is_camera, co
                                                : ": cannot be read as a video"));
 }
 
+// A video as its container tells it.
+struct Claim {
+  int num_frames = 0;  // 0: it does not say
+  double rate_hz = kUnknownFps;
+};
+
+// Asked when the decoder gives no more pictures: is that the end that was claimed? Counts are not
+// exact. MP4 and AVI list every picture, those too that an edit list hides or that were dropped;
+// Matroska tells a length only, of the longest track, which times a nominal rate is too many where
+// the rate varied. So a video is cut short if pictures and time are missing: two pictures or 5 % of
+// it, at most a second, is usual. If the time was filled, nobody knows, and that is only told.
+void check_end(const path& video, const Claim& claim, std::uint64_t num_read, double lasted_s) {
+  constexpr double kUsualRatio = 0.05;
+  constexpr double kMaxUsual_s = 1.0;
+  constexpr double kUsualFrames = 2.0;
+  const double num_missing = claim.num_frames - static_cast<double>(num_read);
+  if (num_missing <= kUsualFrames) return;
+  const double claimed_s = claim.num_frames / claim.rate_hz;
+  const double usual_s =
+      std::max(std::min(kUsualRatio * claimed_s, kMaxUsual_s), kUsualFrames / claim.rate_hz);
+  if (lasted_s < claimed_s - usual_s) {
+    throw InputError(fmt::format(
+        "{}: ends after {} pictures ({:.1f} s), expected {} ({:.1f} s) as the file says: it is cut "
+        "short or damaged",
+        video.string(), num_read, lasted_s, claim.num_frames, claimed_s));
+  }
+  if (num_missing <= kUsualRatio * claim.num_frames) return;
+  spdlog::warn("{}: has {} of the {} pictures it claims: its rate varies, or it is damaged",
+               video.string(), num_read, claim.num_frames);
+}
+
 class VideoSource : public core::Source {
  public:
   VideoSource(const path& video, const Config& config, const path& plugin)
@@ -54,14 +86,14 @@ class VideoSource : public core::Source {
     }
     rig_ = std::make_shared<const core::Rig>(rig);
     const bool is_live = is_camera_device(video);
-    const double told_hz =
-        decoder_->frame_rate_hz() > 0.0 ? decoder_->frame_rate_hz() : kUnknownFps;
+    if (decoder_->frame_rate_hz() > 0.0) claim_.rate_hz = decoder_->frame_rate_hz();
+    if (!is_live) claim_.num_frames = std::max(decoder_->num_frames(), 0);
     info_ = {.name = video.stem().string(),
              .format = is_live ? "camera" : "video",
-             .num_frames = is_live ? 0 : std::max(decoder_->num_frames(), 0),
+             .num_frames = claim_.num_frames,
              .is_calibrated = rig_->is_calibrated(),
              .is_live = is_live,
-             .frame_rate_hz = fps_ > 0.0 ? fps_ : told_hz};
+             .frame_rate_hz = fps_ > 0.0 ? fps_ : claim_.rate_hz};
   }
 
   core::SourceInfo info() const override { return info_; }
@@ -69,10 +101,15 @@ class VideoSource : public core::Source {
 
   std::optional<core::Frame> next() override {
     VideoPicture picture = num_given_ == 0 ? std::exchange(waiting_, {}) : decoder_->next();
-    if (picture.image.empty()) return std::nullopt;
+    if (picture.image.empty()) {
+      check_end(path_, claim_, num_given_, last_told_s_ - first_told_s_ + 1.0 / claim_.rate_hz);
+      return std::nullopt;
+    }
+    last_told_s_ = told_stamp_s(picture);
+    if (num_given_ == 0) first_told_s_ = last_told_s_;
     core::Frame frame;
     frame.id = core::FrameId(num_given_);
-    frame.stamp_s = stamp_s(picture);
+    frame.stamp_s = fps_ > 0.0 ? static_cast<double>(num_given_) / fps_ : last_told_s_;
     frame.name = fmt::format("{} picture {}", path_.filename().string(), num_given_);
     frame.rig = rig_;
     frame.images = {std::move(picture.image)};
@@ -81,16 +118,15 @@ class VideoSource : public core::Source {
           "{}: picture {} is {} x {} pixels, expected {} x {} as the first", path_.string(),
           num_given_, frame.images[0].cols, frame.images[0].rows, size_px_.width, size_px_.height));
     }
-    last_stamp_s_ = frame.stamp_s;
     ++num_given_;
     return frame;
   }
 
  private:
-  double stamp_s(const VideoPicture& picture) const {
-    if (fps_ > 0.0) return static_cast<double>(num_given_) / fps_;
-    if (num_given_ == 0 || picture.stamp_s > last_stamp_s_) return picture.stamp_s;
-    return last_stamp_s_ + 1.0 / info_.frame_rate_hz;
+  // The decoder's, made to rise: of the last pictures some decoders say 0.
+  double told_stamp_s(const VideoPicture& picture) const {
+    if (num_given_ == 0 || picture.stamp_s > last_told_s_) return picture.stamp_s;
+    return last_told_s_ + 1.0 / claim_.rate_hz;
   }
 
   path path_;
@@ -101,7 +137,9 @@ class VideoSource : public core::Source {
   std::shared_ptr<const core::Rig> rig_;
   core::SourceInfo info_;
   std::uint64_t num_given_ = 0;
-  double last_stamp_s_ = 0.0;
+  Claim claim_;
+  double first_told_s_ = 0.0;
+  double last_told_s_ = 0.0;
 };
 
 }  // namespace

@@ -30,6 +30,32 @@ class Video : public testing::Test {
     return complaint([&] { open_source(path, config_); });
   }
 
+  std::string complaint_on_reading(const std::string& name) {
+    return complaint([&] {
+      const auto source = open_source(folder_.at(name), config_);
+      while (source->next()) {
+      }
+    });
+  }
+
+  // Sixty noisy pictures, 6 s.
+  void write_long(const std::string& name, int writer_kind = cv::CAP_OPENCV_MJPEG,
+                  int codec = cv::VideoWriter::fourcc('M', 'J', 'P', 'G')) const {
+    cv::VideoWriter writer(folder_.at(name).string(), writer_kind, codec, 10.0, {64, 48});
+    ASSERT_TRUE(writer.isOpened());
+    cv::RNG random(1);
+    cv::Mat noise(48, 64, CV_8UC3);
+    for (int i = 0; i < 60; ++i) {
+      random.fill(noise, cv::RNG::UNIFORM, 0, 255);
+      writer.write(noise);
+    }
+  }
+
+  // Four bytes, the lowest first.
+  static void set_number(std::string& bytes, std::size_t at, int number) {
+    for (std::size_t i = 0; i < 4; ++i) bytes.at(at + i) = static_cast<char>(number >> (8 * i));
+  }
+
   static constexpr int kNumFrames = 5;
   TestFolder folder_;
   Config config_;
@@ -91,12 +117,62 @@ TEST_F(Video, DamagedVideosNeverCrash) {
   for (int percent = 0; percent < 100; percent += 7) {
     folder_.write("cut.avi",
                   whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
-    const std::string said = complaint([&] {
-      const auto source = open_source(folder_.at("cut.avi"), config_);
-      while (source->next()) {
-      }
-    });
-    EXPECT_THAT(said, testing::AnyOf("no error", HasSubstr("cut.avi"))) << percent;
+    EXPECT_THAT(complaint_on_reading("cut.avi"), testing::AnyOf("no error", HasSubstr("cut.avi")))
+        << percent;
+  }
+}
+
+TEST_F(Video, OneThatIsCutShortIsRefusedAtItsEndWithBothCounts) {
+  write_long("long.avi");
+  EXPECT_EQ(complaint_on_reading("long.avi"), "no error");
+  for (const double kept_ratio : {0.9, 0.5, 0.2}) {
+    write_long("long.avi");
+    folder_.cut("long.avi", kept_ratio);
+    EXPECT_THAT(complaint_on_reading("long.avi"),
+                AllOf(HasSubstr("long.avi: ends after "), HasSubstr("expected 60 (6.0 s)")))
+        << kept_ratio;
+  }
+  // whatever the stamps are said to be
+  config_.fps = 1.0;
+  EXPECT_THAT(complaint_on_reading("long.avi"), HasSubstr("expected 60 (6.0 s)"));
+}
+
+TEST_F(Video, OneWithAHoleIsRefused) {
+  write_long("long.avi");
+  std::string bytes = core::read_file(folder_.at("long.avi"));
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.size() / 4,
+              '\0');
+  folder_.write("long.avi", bytes);
+  EXPECT_THAT(complaint_on_reading("long.avi"), HasSubstr("cut short or damaged"));
+}
+
+// Matroska has a length and no count: pictures may be missing because their rate varied.
+TEST_F(Video, OneThatLastsAsLongAsItClaimsWithFewerPicturesIsWarnedOf) {
+  write_long("long.mkv", cv::CAP_FFMPEG, cv::VideoWriter::fourcc('X', 'V', 'I', 'D'));
+  std::string bytes = core::read_file(folder_.at("long.mkv"));
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.size() / 4,
+              '\0');
+  folder_.write("hole.mkv", bytes);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(complaint_on_reading("long.mkv"), "no error");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(complaint_on_reading("hole.mkv"), "no error");
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              AllOf(HasSubstr("hole.mkv: has "), HasSubstr(" of the 60 pictures it claims")));
+  folder_.write("cut.mkv", bytes.substr(0, bytes.size() / 2));
+  EXPECT_THAT(complaint_on_reading("cut.mkv"), HasSubstr("expected 60 (6.0 s)"));
+}
+
+TEST_F(Video, ACountThatIsTwoPicturesOffIsUsual) {
+  for (const int num_claimed : {kNumFrames + 2, kNumFrames + 3, kNumFrames - 2, 0}) {
+    std::string bytes = core::read_file(video());
+    // the counts in the headers of an AVI: of the file 48 bytes in, of the stream behind "strh"
+    set_number(bytes, 48, num_claimed);
+    set_number(bytes, bytes.find("strh") + 8 + 32, num_claimed);
+    folder_.write("off.avi", bytes);
+    EXPECT_EQ(complaint_on_reading("off.avi") == "no error", num_claimed != kNumFrames + 3)
+        << num_claimed;
   }
 }
 
