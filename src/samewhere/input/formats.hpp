@@ -13,7 +13,8 @@ namespace samewhere::input {
 // InputError naming the file (and line) that is missing or broken.
 
 // rgb.txt and depth.txt (lines `stamp filename`), groundtruth.txt, camera.txt. A colour image
-// without a depth image near in time has no depth.
+// without a depth image near in time has no depth. If that is so of all of them, InputError; if of
+// more than half, a warning in the log. Without config.depth, depth.txt is not looked at.
 std::optional<Recording> find_tum_rgbd(const std::filesystem::path& folder, const Config& config);
 
 // frame-000000.color.png (or .jpg), .depth.png, .pose.txt (world from camera, 4 x 4), camera.txt.

@@ -51,6 +51,34 @@ TEST_F(TumRgbd, DepthCanBeLeftOut) {
   for (const auto& frame : read_all()) EXPECT_FALSE(frame.depth_m);
 }
 
+TEST_F(TumRgbd, DepthThatFitsNoPictureIsRefusedWithTheWayOut) {
+  const char* const way_out = "--set input.depth=false";
+  folder_.write("depth.txt", "# depth maps\n200.001000 depth/1.png\n200.070000 depth/2.png\n");
+  EXPECT_THAT(complaint_on_opening(),
+              AllOf(HasSubstr("depth.txt: no depth image fits"), HasSubstr("99.935 s apart"),
+                    HasSubstr("0.02 s (input.max_stamp_difference_s)"), HasSubstr(way_out)));
+  folder_.write("depth.txt", "# depth maps\n1.5 depth/1.png\n100.0124 depth/2.png\n");
+  config_.max_stamp_difference_s = 0.01;
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("0.0124 s apart"));
+  folder_.write("depth.txt", "# depth maps\n");
+  EXPECT_THAT(complaint_on_opening(),
+              AllOf(HasSubstr("depth.txt: lists no depth image"), HasSubstr(way_out)));
+  config_.depth = false;
+  EXPECT_EQ(complaint_on_opening(), "no error");
+  EXPECT_FALSE(open()->info().has_depth);
+}
+
+TEST_F(TumRgbd, DepthOfFewerThanHalfOfThePicturesIsWarnedOf) {
+  const auto said = [&] {
+    testing::internal::CaptureStdout();
+    EXPECT_TRUE(open()->info().has_depth);
+    return testing::internal::GetCapturedStdout();
+  };
+  EXPECT_EQ(said(), "");
+  folder_.write("depth.txt", "100.001000 depth/1.png\n200.070000 depth/2.png\n");
+  EXPECT_THAT(said(), AllOf(HasSubstr("depth.txt: only 1 of 3 pictures"), HasSubstr("0.02 s")));
+}
+
 TEST_F(TumRgbd, ColourAloneIsEnough) {
   for (const char* name : {"depth.txt", "camera.txt", "groundtruth.txt"}) {
     std::filesystem::remove(folder_.at(name));
