@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include <fmt/format.h>
 #include <sys/wait.h>
 
 #include <samewhere/core/file.hpp>
@@ -22,8 +23,8 @@ struct Outcome {
 inline Outcome run_program(const std::string& arguments, const std::filesystem::path& scratch) {
   const std::filesystem::path out = scratch / "stdout.txt";
   const std::filesystem::path err = scratch / "stderr.txt";
-  const std::string command = std::string("'") + SAMEWHERE_PROGRAM + "' " + arguments + " >'" +
-                              out.string() + "' 2>'" + err.string() + "' </dev/null";
+  const std::string command = fmt::format("'{}' {} >'{}' 2>'{}' </dev/null", SAMEWHERE_PROGRAM,
+                                          arguments, out.string(), err.string());
   const int status = std::system(command.c_str());
   const int exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return {exit_code, core::read_file(out), core::read_file(err)};

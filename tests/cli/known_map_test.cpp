@@ -1,5 +1,6 @@
 // A run in the map of an earlier one: what it tells, what is refused, and that nothing is lost.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,19 +11,19 @@ namespace samewhere::test {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
-constexpr char kWalk[] = "'twin:office-loop?seed=2' --set twin.num_frames=12 ";
+constexpr char kWalk[] = "'twin:office-loop?seed=2' --set twin.num_frames=12";
 
 class KnownMap : public testing::Test {
  protected:
   KnownMap() {
-    const Outcome made = run(std::string("run ") + kWalk + "--out " + quoted(path("a")));
+    const Outcome made = run(fmt::format("run {} --out {}", kWalk, in("a")));
     EXPECT_EQ(made.exit_code, 0) << made.err;
   }
 
   Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
   std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
+  std::string in(const std::string& name) const { return quoted(path(name)); }
   void expect_refused(const std::string& arguments, const std::string& why) const {
     const Outcome refused = run(arguments);
     EXPECT_EQ(refused.exit_code, 2) << arguments;
@@ -33,13 +34,13 @@ class KnownMap : public testing::Test {
 };
 
 TEST_F(KnownMap, WhatItRecognisedIsToldAndShown) {
-  const Outcome found = run(std::string("run ") + kWalk + "--map " + quoted(path("a/map.sw")) +
-                            " --localize --out " + quoted(path("b")));
+  const Outcome found =
+      run(fmt::format("run {} --map {} --localize --out {}", kWalk, in("a/map.sw"), in("b")));
   ASSERT_EQ(found.exit_code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr("candidates of the known map / accepted"));
-  EXPECT_THAT(found.out, HasSubstr("candidates judged                                  0\n"))
+  EXPECT_THAT(found.out, testing::ContainsRegex("candidates judged  *0\n"))
       << "what no truth knows does not count";
-  EXPECT_THAT(run("ledger " + quoted(path("b")) + " list --verdict LOOP").out,
+  EXPECT_THAT(run(fmt::format("ledger {} list --verdict LOOP", in("b"))).out,
               HasSubstr(" of session 0 "));
   EXPECT_THAT(core::read_file(path("b/report.html")),
               testing::ContainsRegex("<img src=\"data:[^>]*alt=\"frame [0-9]* of session 0\""));
@@ -47,27 +48,28 @@ TEST_F(KnownMap, WhatItRecognisedIsToldAndShown) {
 
 TEST_F(KnownMap, AMapThatCannotBeUsedCostsNoEarlierResults) {
   const std::string trajectory = core::read_file(path("a/trajectory.tum"));
-  const std::string again = std::string("run ") + kWalk + "--out " + quoted(path("a")) + " --map ";
-  expect_refused(again + quoted(path("nowhere.sw")), "nowhere.sw: no such file");
-  expect_refused(again + quoted(path("a/map.sw")) + " --set features.num_features=800",
+  const std::string again = fmt::format("run {} --out {} --map", kWalk, in("a"));
+  expect_refused(fmt::format("{} {}", again, in("nowhere.sw")), "nowhere.sw: no such file");
+  expect_refused(fmt::format("{} {} --set features.num_features=800", again, in("a/map.sw")),
                  "a/map.sw: the map was made with features.num_features = 1000");
   EXPECT_EQ(core::read_file(path("a/trajectory.tum")), trajectory);
-  EXPECT_EQ(run("map " + quoted(path("a/map.sw")) + " info").exit_code, 0);
+  EXPECT_EQ(run(fmt::format("map {} info", in("a/map.sw"))).exit_code, 0);
 }
 
 TEST_F(KnownMap, DoesNotGrowByARunWithoutItsDepth) {
-  expect_refused("run 'twin:office-loop?seed=2&camera=mono' --set twin.num_frames=12 --map " +
-                     quoted(path("a/map.sw")) + " --out " + quoted(path("b")),
+  expect_refused(fmt::format("run 'twin:office-loop?seed=2&camera=mono' --set twin.num_frames=12 "
+                             "--map {} --out {}",
+                             in("a/map.sw"), in("b")),
                  "a/map.sw: the map was made with depth");
   EXPECT_FALSE(std::filesystem::exists(path("b")));
 }
 
 TEST_F(KnownMap, ResultsGoIntoNobodyElsesFolder) {
-  ASSERT_EQ(run(std::string("twin ") + kWalk + "--out " + quoted(path("d"))).exit_code, 0);
+  ASSERT_EQ(run(fmt::format("twin {} --out {}", kWalk, in("d"))).exit_code, 0);
   const std::string frames = core::read_file(path("d/frames.csv"));
-  expect_refused(std::string("run ") + kWalk + "--out " + quoted(path("d")),
+  expect_refused(fmt::format("run {} --out {}", kWalk, in("d")),
                  "d/frames.csv: is there already and of no earlier run");
-  expect_refused("run " + quoted(path("d")) + " --out " + quoted(path("d")),
+  expect_refused(fmt::format("run {0} --out {0}", in("d")),
                  "d: is the recording itself; expected another folder for the results");
   EXPECT_EQ(core::read_file(path("d/frames.csv")), frames);
 }

@@ -128,7 +128,8 @@ TEST(Config, DoublesNeverLookLikeWholeNumbers) {
 }
 
 TEST(Config, AValueOutsideItsRangeIsToldWithRangeFileAndLine) {
-  const std::string yaml = std::string(10, '\n') + "retrieve:\n  min_similarity: 7\n";
+  std::string yaml(10, '\n');
+  yaml += "retrieve:\n  min_similarity: 7\n";
   EXPECT_EQ(error_of(yaml),
             "retrieve.min_similarity = 7 is outside [-1, 1]  (configs/mine.yaml, line 12)");
   EXPECT_EQ(error_of("retrieve: {sampling: {num_draws: 0}}"),
