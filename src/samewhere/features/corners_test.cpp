@@ -8,6 +8,7 @@
 
 #include <samewhere/features/corners.hpp>
 #include <samewhere/features/describe.hpp>
+#include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/features/pyramid.hpp>
 

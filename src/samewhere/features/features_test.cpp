@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/features/match_projected.hpp>
 #include <samewhere/features/orb.hpp>

@@ -1,15 +1,12 @@
 #include <limits>
 
-#include <opencv2/core/hal/intrin.hpp>
-
-#include <samewhere/features/describe.hpp>
+#include <samewhere/core/errors.hpp>
+#include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_pair.hpp>
 
 namespace samewhere::features {
 namespace {
 
-constexpr int kHalfBytes = kDescriptorBytes / 2;
-static_assert(kHalfBytes == cv::v_uint8x16::nlanes);
 constexpr int kFar = std::numeric_limits<int>::max();
 
 struct Nearest {
@@ -18,11 +15,12 @@ struct Nearest {
   int second_bits = kFar;
 
   void offer(int candidate, int bits) {
+    if (bits >= second_bits) return;
     if (bits < best_bits) {
       second_bits = best_bits;
       best_bits = bits;
       index = candidate;
-    } else if (bits < second_bits) {
+    } else {
       second_bits = bits;
     }
   }
@@ -30,23 +28,20 @@ struct Nearest {
 
 }  // namespace
 
-int distance_bits(const unsigned char* a, const unsigned char* b) {
-  const auto bits_of_half = [&](int first) {
-    return cv::v_popcount(cv::v_load(a + first) ^ cv::v_load(b + first));
-  };
-  return static_cast<int>(cv::v_reduce_sum(bits_of_half(0) + bits_of_half(kHalfBytes)));
-}
-
 std::vector<Match> match_pair(const cv::Mat& first, const cv::Mat& second, const Config& config) {
+  core::require(second.empty() || second.isContinuous(), "descriptors lie one behind the other");
   std::vector<Nearest> of_first(static_cast<std::size_t>(first.rows));
   std::vector<Nearest> of_second(static_cast<std::size_t>(second.rows));
+  std::vector<int> bits(of_second.size());
   for (int i = 0; i < first.rows; ++i) {
-    const unsigned char* row = first.ptr(i);
+    distances_bits(first.ptr(i), second.ptr(), bits);
+    Nearest nearest;
     for (int j = 0; j < second.rows; ++j) {
-      const int bits = distance_bits(row, second.ptr(j));
-      of_first[static_cast<std::size_t>(i)].offer(j, bits);
-      of_second[static_cast<std::size_t>(j)].offer(i, bits);
+      const auto k = static_cast<std::size_t>(j);
+      nearest.offer(j, bits[k]);
+      of_second[k].offer(i, bits[k]);
     }
+    of_first[static_cast<std::size_t>(i)] = nearest;
   }
   std::vector<Match> matches;
   for (int i = 0; i < first.rows; ++i) {

@@ -15,9 +15,6 @@ struct Match {
   int distance_bits = 0;
 };
 
-// Hamming distance of two 32-byte ORB descriptors, bits.
-int distance_bits(const unsigned char* a, const unsigned char* b);
-
 // Pairs that are each other's nearest neighbour, not further apart than max_distance_bits, and
 // clearly nearer than the second nearest (Lowe 2004: max_ratio). Ascending in `first`.
 std::vector<Match> match_pair(const cv::Mat& first, const cv::Mat& second, const Config& config);

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_projected.hpp>
 #include <samewhere/features/pyramid.hpp>
 

@@ -9,6 +9,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/rectified_pair.hpp>
+#include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/features/pyramid.hpp>
 #include <samewhere/features/stereo.hpp>

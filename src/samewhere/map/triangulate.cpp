@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/map/seen.hpp>
