@@ -9,7 +9,10 @@
 #include <unistd.h>
 
 #include "commands.hpp"
+#include "options.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/interrupt.hpp>
+#include <samewhere/pipeline/word_training.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -30,15 +33,67 @@ namespace {
                   program, std::generic_category().message(error)));
 }
 
+struct WordsCommand {
+  pipeline::WordTraining training;
+  std::string out = "words.bin";
+  ConfigOptions config;
+};
+
+void train_words(const WordsCommand& command) {
+  core::catch_interrupts();
+  pipeline::WordTraining training = command.training;
+  training.out = command.out;
+  training.command = "samewhere train words";
+  for (const std::string& source : training.sources) training.command += " " + source;
+  training.command += fmt::format(" --step {} --branching {} --depth {} --out {}", training.step,
+                                  training.grow.branching, training.grow.depth, command.out);
+  const pipeline::TrainedWords trained = pipeline::train_words(training, load(command.config));
+  fmt::print("{} words of {} features in {} pictures: {}\n", trained.num_words,
+             trained.num_features, trained.num_pictures, command.out);
+}
+
+void add_words_command(CLI::App& train) {
+  auto command = std::make_shared<WordsCommand>();
+  CLI::App* sub = train.add_subcommand(
+      "words", "Grow the vocabulary of ORB features by which similar views are found");
+  sub->set_help_flag("-h,--help", "Print this help message and exit");
+  pipeline::WordTraining& training = command->training;
+  sub->add_option("SOURCE", training.sources, "recordings, folders or lists of images, twin:PRESET")
+      ->required();
+  sub->add_option("--out", command->out, "file to write; its card is written beside it")
+      ->capture_default_str();
+  sub->add_option("--step", training.step, "look at one picture of so many")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  sub->add_option("--branching", training.grow.branching, "children of a node")
+      ->check(CLI::Range(2, 100))
+      ->capture_default_str();
+  sub->add_option("--depth", training.grow.depth,
+                  "levels: at most branching to the power of depth words")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  add_config_options(*sub, command->config);
+  sub->callback([command] { train_words(*command); });
+  sub->footer(
+      "Examples:\n"
+      "  samewhere train words photos/ --out words.bin\n"
+      "  samewhere train words office/ 'twin:hotel?seed=7' --step 5 --out words.bin\n"
+      "then: samewhere loops SOURCE --set retrieve.vocabulary=words.bin --set "
+      "retrieve.word_candidates=3");
+}
+
 }  // namespace
 
 void add_train_command(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "train", "Train the network that describes a view (samewhere train --help)");
-  // all that follows is for the training program, --help too
+  // all that follows is for the training program, --help too; but for the words, which need none
   sub->set_help_flag();
   sub->prefix_command();
-  sub->callback([sub] { start_training(sub->remaining()); });
+  add_words_command(*sub);
+  sub->callback([sub] {
+    if (sub->get_subcommands().empty()) start_training(sub->remaining());
+  });
 }
 
 }  // namespace samewhere::app

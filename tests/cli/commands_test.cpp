@@ -1,5 +1,6 @@
 // Each command does what its help says.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "program.hpp"
@@ -32,10 +33,31 @@ class Commands : public testing::Test {
   input::TestFolder folder_;
 };
 
+TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
+  const std::string walk = "'twin:office-loop?seed=2' --set twin.num_frames=6";
+  const Outcome grown = run(fmt::format("train words {} --step 2 --branching 4 --depth 3 --out {}",
+                                        walk, quoted(path("mine.bin"))));
+  ASSERT_EQ(grown.exit_code, 0) << grown.err;
+  EXPECT_NE(grown.out.find("features in 3 pictures"), std::string::npos) << grown.out;
+  EXPECT_NE(core::read_file(path("mine.json")).find("\"num_pictures\": 3"), std::string::npos);
+  const std::string loops = fmt::format(
+      "loops {} --set retrieve.window_frames=2 --set retrieve.num_candidates=1 "
+      "--set retrieve.word_candidates=3 --out {} --set retrieve.vocabulary=",
+      walk, quoted(path("out")));
+  const Outcome found = run(loops + quoted(path("mine.bin")));
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  // of frames 3, 4 and 5: all older ones that the window allows
+  EXPECT_EQ(row_of(found.out, "candidates judged"), "6");
+  const Outcome missing = run(loops + "no.bin");
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.err.find("retrieve.vocabulary = no.bin: there is no such file"),
+            std::string::npos);
+}
+
 TEST_F(Commands, HelpShowsAnExampleOfEach) {
   EXPECT_EQ(run("--help").exit_code, 0);
-  for (const std::string command :
-       {"run", "loops", "eval", "dense", "bench", "twin", "map", "config", "calibrate", "doctor"}) {
+  for (const std::string command : {"run", "loops", "eval", "dense", "bench", "twin", "map",
+                                    "config", "calibrate", "doctor", "train words"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << command;

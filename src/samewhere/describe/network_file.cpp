@@ -9,6 +9,7 @@
 #include <samewhere/core/checksum.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/model_file.hpp>
 #include <samewhere/describe/network_file.hpp>
 
 namespace samewhere::describe {
@@ -200,14 +201,7 @@ bool is_picture(const End& end) {
 }  // namespace
 
 std::filesystem::path find_network(const std::string& file) {
-  const std::filesystem::path shipped = std::filesystem::path(SAMEWHERE_MODELS_FOLDER) / file;
-  for (const std::filesystem::path& path : {std::filesystem::path(file), shipped}) {
-    std::error_code ignored;  // what cannot be looked at is not there
-    if (std::filesystem::is_regular_file(path, ignored)) return path;
-  }
-  throw core::InputError(fmt::format(
-      "describe.network = {}: there is no such file, here or in {}; expected an ONNX network",
-      file.empty() ? "\"\"" : file, SAMEWHERE_MODELS_FOLDER));
+  return core::find_model("describe.network", file, "an ONNX network");
 }
 
 NetworkFile read_network(const std::filesystem::path& path) {

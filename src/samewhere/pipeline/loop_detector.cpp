@@ -6,6 +6,14 @@
 #include <samewhere/pipeline/loop_detector.hpp>
 
 namespace samewhere::pipeline {
+namespace {
+
+// None of a view whose features nobody extracted.
+cv::Mat orb_of(const features::View& view) {
+  return view.features ? view.features->descriptors : cv::Mat();
+}
+
+}  // namespace
 
 LoopDetector::LoopDetector(const Config& config)
     : describer_(describe::make_describer(config.describe)),
@@ -28,7 +36,7 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
   std::vector<core::Candidate> candidates;
   {
     const core::ScopedTimer timer(timings, "retrieve");
-    candidates = retrieve::compare(descriptor, search(descriptor));
+    candidates = retrieve::compare(descriptor, search(descriptor, view));
   }
   std::erase_if(candidates, [&](const core::Candidate& c) { return is_connected(c.match); });
   const core::ScopedTimer timer(timings, "verify");
@@ -48,7 +56,7 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
   looks_alone.require_pose = false;  // whoever tracks the view among the place's points finds it
   std::vector<core::LedgerRow> rows;
   for (core::Candidate candidate :
-       retrieve::compare(descriptor, retriever_.search_places(descriptor))) {
+       retrieve::compare(descriptor, retriever_.search_places(descriptor, orb_of(view)))) {
     candidate.is_lost = true;
     rows.push_back(judged(candidate, view, nothing, looks_alone));
   }
@@ -56,7 +64,7 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
 }
 
 void LoopDetector::remember(const core::Descriptor& descriptor, const features::View& view) {
-  retriever_.add(descriptor);
+  retriever_.add(descriptor, orb_of(view));
   views_.emplace(view.frame, view);
 }
 
@@ -64,9 +72,10 @@ core::Descriptor LoopDetector::describe(core::FrameId frame, const cv::Mat& imag
   return describer_->describe(frame, image);
 }
 
-std::vector<retrieve::FoundView> LoopDetector::search(const core::Descriptor& descriptor) {
-  std::vector<retrieve::FoundView> found = retriever_.search(descriptor);
-  retriever_.add(descriptor);
+std::vector<retrieve::FoundView> LoopDetector::search(const core::Descriptor& descriptor,
+                                                      const features::View& view) {
+  std::vector<retrieve::FoundView> found = retriever_.search(descriptor, orb_of(view));
+  retriever_.add(descriptor, orb_of(view));
   return found;
 }
 

@@ -74,7 +74,8 @@ class LoopDetector {
   // The steps of look(). Each has its own state and gets the frames in order; so each may run in a
   // thread of its own, with the same result.
   core::Descriptor describe(core::FrameId frame, const cv::Mat& image);
-  std::vector<retrieve::FoundView> search(const core::Descriptor& descriptor);
+  std::vector<retrieve::FoundView> search(const core::Descriptor& descriptor,
+                                          const features::View& view);
   std::vector<core::LedgerRow> judge(const core::Descriptor& descriptor,
                                      const std::vector<core::Candidate>& candidates,
                                      const features::View& view, const MapKnowledge& map);

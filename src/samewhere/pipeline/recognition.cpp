@@ -80,7 +80,7 @@ DescribedFrame Recognition::describe(const core::Frame& frame) {
 
 SearchedFrame Recognition::search(DescribedFrame described) {
   const core::ScopedTimer timer(search_timings_, "search");
-  SearchedFrame searched{.found = detector_.search(described.descriptor)};
+  SearchedFrame searched{.found = detector_.search(described.descriptor, described.view)};
   searched.described = std::move(described);
   return searched;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <samewhere/core/config.hpp>
 
 namespace samewhere::retrieve {
@@ -10,6 +12,8 @@ enum class PerDraw { kTop3, kNearest };
 struct Config {
   Search search = Search::kExact;
   int num_candidates = 3;
+  int word_candidates = 0;
+  std::string vocabulary = "words.bin";
   double window_s = 5.0;
   int window_frames = -1;
   int place_frames = 0;
@@ -31,6 +35,14 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .choices = {"exact", "sampled", "every_queue"}});
   visit("num_candidates", config.num_candidates,
         {.help = "views handed to verification, the best ones", .min = 1, .max = 1000});
+  visit("word_candidates", config.word_candidates,
+        {.help = "and so many more, those that show most of the same features; 0: features are not "
+                 "asked",
+         .min = 0,
+         .max = 1000});
+  visit("vocabulary", config.vocabulary,
+        {.help = "word_candidates: file of `samewhere train words`; relative to the working "
+                 "directory, then to models/"});
   visit("window_s", config.window_s,
         {.help = "a view this old or younger is no candidate, by the source's frame rate",
          .min = 0.0,

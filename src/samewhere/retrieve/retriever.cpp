@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/model_file.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/retrieve/retriever.hpp>
@@ -29,11 +30,17 @@ SegmentedStore make_store(const Config& config) {
 Retriever::Retriever(const Config& config, std::uint64_t seed)
     : config_(config), seed_(seed), store_(make_store(config)) {
   core::require(config.window_frames >= 0, "window_s is resolved into window_frames");
+  if (config.word_candidates > 0) {
+    words_.emplace(
+        std::make_shared<const features::Vocabulary>(features::load_vocabulary(core::find_model(
+            "retrieve.vocabulary", config.vocabulary, "a file of `samewhere train words`"))));
+  }
 }
 
-void Retriever::add(const core::Descriptor& descriptor) {
+void Retriever::add(const core::Descriptor& descriptor, const cv::Mat& features) {
   check(descriptor);
   store_.append(descriptor.frame, descriptor.unit);
+  if (words_) words_->append(features);
   describer_checksum_ = descriptor.describer_checksum;
 }
 
@@ -42,20 +49,39 @@ core::Descriptor Retriever::view(int position) const {
   return {store_.frame(position), {unit.begin(), unit.end()}, *describer_checksum_};
 }
 
-std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor) const {
+std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor,
+                                         const cv::Mat& features) const {
   check(descriptor);
   const int num_allowed = store_.num_older(descriptor.frame, config_.window_frames);
-  return views_at(best_places(store_, scored(descriptor, num_allowed), config_));
+  return found_by(descriptor, features, num_allowed, config_);
 }
 
-std::vector<FoundView> Retriever::search_places(const core::Descriptor& descriptor) const {
+std::vector<FoundView> Retriever::search_places(const core::Descriptor& descriptor,
+                                                const cv::Mat& features) const {
   check(descriptor);
   Config lost = config_;
-  lost.num_candidates = config_.lost_candidates;
+  lost.num_candidates = lost.word_candidates = config_.lost_candidates;
   lost.place_frames = config_.lost_place_frames;
   constexpr int kNoWindow = 0;
   const int num_allowed = store_.num_older(descriptor.frame, kNoWindow);
-  return views_at(best_places(store_, scored(descriptor, num_allowed), lost));
+  return found_by(descriptor, features, num_allowed, lost);
+}
+
+std::vector<FoundView> Retriever::found_by(const core::Descriptor& descriptor,
+                                           const cv::Mat& features, int num_allowed,
+                                           const Config& config) const {
+  std::vector<ScoredPosition> found = best_places(store_, scored(descriptor, num_allowed), config);
+  if (!words_) return views_at(found);
+  Config by_words = config;
+  by_words.num_candidates = config.word_candidates;
+  for (const ScoredPosition& one :
+       best_places(store_, words_->search(features, num_allowed), by_words)) {
+    const bool is_known = std::any_of(found.begin(), found.end(), [&](const ScoredPosition& other) {
+      return other.position == one.position;
+    });
+    if (!is_known) found.push_back(one);
+  }
+  return views_at(found);
 }
 
 std::vector<FoundView> Retriever::views_at(const std::vector<ScoredPosition>& positions) const {
@@ -93,6 +119,7 @@ void Retriever::save(const std::filesystem::path& path) const {
 void Retriever::load(const std::filesystem::path& path, std::uint64_t describer_checksum) {
   core::require(num_views() == 0, "views are loaded into an empty retriever");
   store_ = load_store(path, describer_checksum, {config_.group_size, config_.queue_size});
+  for (int i = 0; words_ && i < num_views(); ++i) words_->append({});
   describer_checksum_ = describer_checksum;
 }
 

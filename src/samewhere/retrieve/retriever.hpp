@@ -10,6 +10,7 @@
 #include <samewhere/retrieve/config.hpp>
 #include <samewhere/retrieve/search.hpp>
 #include <samewhere/retrieve/segmented_store.hpp>
+#include <samewhere/retrieve/word_index.hpp>
 
 namespace samewhere::retrieve {
 
@@ -33,18 +34,24 @@ class Retriever {
   // it. Throws InputError on settings that do not fit each other.
   Retriever(const Config& config, std::uint64_t seed);
 
-  // Remembers a view. Frames ascend strictly. Throws ContractError on any other order, and on a
-  // descriptor of another describer or length, or one that is neither of unit length nor zero.
-  void add(const core::Descriptor& descriptor);
+  // Remembers a view, by what it looks like as a whole and by its ORB descriptors, a row each
+  // (none: no feature of it is ever found). Frames ascend strictly. Throws ContractError on any
+  // other order, and on a descriptor of another describer or length, or one that is neither of unit
+  // length nor zero.
+  void add(const core::Descriptor& descriptor, const cv::Mat& features = {});
 
-  // At most config.num_candidates views, none of them config.window_frames old or younger. Exact
+  // At most config.num_candidates views that look alike as a whole, and behind them at most
+  // config.word_candidates others that show most of the same features, none of them
+  // config.window_frames old or younger. Exact
   // search knows no threshold: what is alike enough, verification decides. The others may find
   // nothing; the draws depend on seed and query frame only. The query need not have been added.
   // Throws ContractError as add().
-  std::vector<FoundView> search(const core::Descriptor& descriptor) const;
+  std::vector<FoundView> search(const core::Descriptor& descriptor,
+                                const cv::Mat& features = {}) const;
   // For who is lost: he may be where he was a moment ago, and wants to know places that look alike
-  // rather than one place many times: no window, lost_candidates, lost_place_frames.
-  std::vector<FoundView> search_places(const core::Descriptor& descriptor) const;
+  // rather than one place many times: no window, lost_candidates of either kind, lost_place_frames.
+  std::vector<FoundView> search_places(const core::Descriptor& descriptor,
+                                       const cv::Mat& features = {}) const;
   // The search and then the exact similarity.
   std::vector<core::Candidate> query(const core::Descriptor& descriptor) const;
 
@@ -64,12 +71,15 @@ class Retriever {
  private:
   void check(const core::Descriptor& descriptor) const;
   std::vector<ScoredPosition> scored(const core::Descriptor& descriptor, int num_allowed) const;
+  std::vector<FoundView> found_by(const core::Descriptor& descriptor, const cv::Mat& features,
+                                  int num_allowed, const Config& config) const;
   std::vector<FoundView> views_at(const std::vector<ScoredPosition>& positions) const;
 
   Config config_;
   std::uint64_t seed_;
   std::optional<std::uint64_t> describer_checksum_;  // of the first view
   SegmentedStore store_;
+  std::optional<WordIndex> words_;  // of the same views
 };
 
 }  // namespace samewhere::retrieve
