@@ -180,7 +180,7 @@ core::Evidence judged_by(const core::Verdict& verdict) {
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const verify::Config& config) {
   const auto rank = [&](const core::LedgerRow& row) {
-    return std::pair(core::is_loop(row.verdict), verify::score(judged_by(row.verdict), config));
+    return std::pair(core::is_loop(row.verdict), verify::rank(judged_by(row.verdict), config));
   };
   const core::LedgerRow* best = nullptr;
   for (const auto& row : rows) {

@@ -109,9 +109,8 @@ class LoopDetector {
   std::uint64_t num_candidates_ = 0;
 };
 
-// The candidate of a query that ranks first: a loop before what was refused, then by verify::score,
-// of equals the more similar. Nothing of
-// no rows.
+// The candidate of a query that ranks first: a loop before what was refused, then by verify::rank,
+// of equals the more similar. Nothing of no rows.
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const verify::Config& config);
 

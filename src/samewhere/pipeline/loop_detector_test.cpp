@@ -41,6 +41,19 @@ std::vector<std::string> stages(LoopDetector& detector, std::uint64_t query) {
   return stages;
 }
 
+// A sequence may go on over weak pairs of a query to views further on: of two that it holds, the
+// view shows the one that more of its own features agree with.
+TEST(LoopDetector, TheBestOfAQueryIsWhatTheViewItselfShowsMostOf) {
+  const auto accepted = [](std::uint64_t match, int num_inliers, int num_sequence_inliers) {
+    core::LoopClosure loop{.candidate = core::CandidateId(match)};
+    loop.evidence.geometry = core::GeometryEvidence{.num_inliers = num_inliers};
+    loop.evidence.sequence = core::SequenceEvidence{.num_inliers = num_sequence_inliers};
+    return core::LedgerRow{{.id = loop.candidate, .match = core::FrameId(match)}, loop};
+  };
+  const std::vector<core::LedgerRow> rows = {accepted(27, 176, 3852), accepted(31, 28, 4235)};
+  EXPECT_EQ(best_of_query(rows, {})->candidate.match, core::FrameId(27));
+}
+
 TEST(LoopDetector, ThePublishedOneAcceptsTheBestMatchOfAViewAndThenPauses) {
   Config config = profile("paper");
   config.retrieve.window_frames = 0;

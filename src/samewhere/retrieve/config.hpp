@@ -28,6 +28,24 @@ struct Config {
   int queue_size = 10;
 };
 
+inline void visit_sampling(Config& config, core::FieldVisitor& visit) {
+  visit("num_draws", config.num_draws,
+        {.help = "sampled search: L, queues drawn per query", .min = 1, .max = 1000000});
+  visit("min_similarity", config.min_similarity,
+        {.help = "sampled, every_queue: cosine that a view must exceed, eq. (7)",
+         .min = -1.0,
+         .max = 1.0});
+  visit("per_draw", config.per_draw,
+        {.help = "sampled, every_queue: kept of a queue: its three best (Table 1), or the nearest "
+                 "by eq. (5)-(6)",
+         .choices = {"top3", "nearest"}});
+  visit(
+      "group_size", config.group_size,
+      {.help = "views in a group of the store; a multiple of queue_size", .min = 1, .max = 100000});
+  visit("queue_size", config.queue_size,
+        {.help = "consecutive views in a queue of the store", .min = 1, .max = 100000});
+}
+
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("search", config.search,
         {.help = "compare every stored view, or a random sample of them (the published method), or "
@@ -56,21 +74,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "num_candidates for a view that is lost", .min = 1, .max = 1000});
   visit("lost_place_frames", config.lost_place_frames,
         {.help = "place_frames for a view that is lost", .min = 0});
-  visit("num_draws", config.num_draws,
-        {.help = "sampled search: L, queues drawn per query", .min = 1, .max = 1000000});
-  visit("min_similarity", config.min_similarity,
-        {.help = "sampled, every_queue: cosine that a view must exceed, eq. (7)",
-         .min = -1.0,
-         .max = 1.0});
-  visit("per_draw", config.per_draw,
-        {.help = "sampled, every_queue: kept of a queue: its three best (Table 1), or the nearest "
-                 "by eq. (5)-(6)",
-         .choices = {"top3", "nearest"}});
-  visit(
-      "group_size", config.group_size,
-      {.help = "views in a group of the store; a multiple of queue_size", .min = 1, .max = 100000});
-  visit("queue_size", config.queue_size,
-        {.help = "consecutive views in a queue of the store", .min = 1, .max = 100000});
+  visit_sampling(config, visit);
 }
 
 }  // namespace samewhere::retrieve

@@ -177,11 +177,16 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   return loop;
 }
 
-double score(const Evidence& evidence, const Config& config) {
+double rank(const Evidence& evidence, const Config& config) {
   if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
-  int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
-  if (evidence.sequence) num_inliers = std::max(num_inliers, evidence.sequence->num_inliers);
+  const int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
   return num_inliers + 0.499 * (1.0 + evidence.similarity);
+}
+
+double score(const Evidence& evidence, const Config& config) {
+  const double alone = rank(evidence, config);
+  if (config.rank_by == RankBy::kSimilarity || !evidence.sequence) return alone;
+  return std::max(alone, evidence.sequence->num_inliers + 0.499 * (1.0 + evidence.similarity));
 }
 
 }  // namespace samewhere::verify

@@ -28,9 +28,13 @@ std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
 bool may_need_sequences(const Config& config);
 bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config);
 
-// How sure the evidence is, for the ranking of one query's candidates and for precision-recall
-// curves: the similarity, or the inliers (of the whole sequence, if there is one) plus the
-// similarity mapped into [0, 1), which then only breaks ties.
+// What makes a candidate the best of its query: the similarity, or the inliers plus the similarity
+// mapped into [0, 1), which then only breaks ties. The views around do not count: they say that a
+// place is seen again, the view itself which part of it.
+double rank(const core::Evidence& evidence, const Config& config);
+
+// How sure the evidence is, for precision-recall curves: the same, with the inliers of the whole
+// sequence if there is one.
 double score(const core::Evidence& evidence, const Config& config);
 
 }  // namespace samewhere::verify
