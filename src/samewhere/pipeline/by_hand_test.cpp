@@ -243,13 +243,14 @@ TEST_F(ByHandInAFolder, WhatCannotBeDoneChangesNothing) {
 }
 
 TEST_F(ByHandInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
-  scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
-  MapVersion map = file.load().map;
-  scene::Edit edit =
-      map::start_map(map, features::test_view(world_, 0, map::test_walk(3)), core::Rigid3{});
-  edit.keyframes[0].view.frame = core::FrameId(0, 1);
-  map = apply(map, edit);
-  file.commit(map, {});
+  {
+    scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
+    const MapVersion map = file.load().map;
+    scene::Edit edit =
+        map::start_map(map, features::test_view(world_, 0, map::test_walk(3)), core::Rigid3{});
+    edit.keyframes[0].view.frame = core::FrameId(0, 1);
+    file.commit(apply(map, edit), {});
+  }
   EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("more than one run"));
 }
 
