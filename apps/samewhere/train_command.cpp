@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/pipeline/word_training.hpp>
 
@@ -43,10 +44,17 @@ void train_words(const WordsCommand& command) {
   core::catch_interrupts();
   pipeline::WordTraining training = command.training;
   training.out = command.out;
+  if (training.out.extension() == ".json") {
+    throw core::InputError("--out = " + command.out +
+                           ": the card is written there; expected another ending, such as .bin");
+  }
+  core::make_writable_folder(std::filesystem::absolute(training.out).parent_path());
   training.command = "samewhere train words";
   for (const std::string& source : training.sources) training.command += " " + source;
   training.command += fmt::format(" --step {} --branching {} --depth {} --out {}", training.step,
                                   training.grow.branching, training.grow.depth, command.out);
+  for (const std::string& assignment : command.config.assignments)
+    training.command += " --set " + assignment;
   const pipeline::TrainedWords trained = pipeline::train_words(training, load(command.config));
   fmt::print("{} words of {} features in {} pictures: {}\n", trained.num_words,
              trained.num_features, trained.num_pictures, command.out);

@@ -48,6 +48,7 @@ TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
   EXPECT_EQ(found.exit_code, 0) << found.err;
   // of frames 3, 4 and 5: all older ones that the window allows
   EXPECT_EQ(row_of(found.out, "candidates judged"), "6");
+  EXPECT_EQ(run("train words " + walk + " --out " + quoted(path("words.json"))).exit_code, 2);
   const Outcome missing = run(loops + "no.bin");
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.err.find("retrieve.vocabulary = no.bin: there is no such file"),

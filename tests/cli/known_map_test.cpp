@@ -6,6 +6,7 @@
 
 #include "program.hpp"
 #include <samewhere/input/test_folder.hpp>
+#include <samewhere/scene/writer_lock.hpp>
 
 namespace samewhere::test {
 namespace {
@@ -64,6 +65,13 @@ TEST_F(KnownMap, DoesNotGrowByARunWithoutItsDepth) {
   EXPECT_FALSE(std::filesystem::exists(path("b")));
 }
 
+TEST_F(KnownMap, AMapThatSomebodyWritesToIsNotRemoved) {
+  const scene::WriterLock lock(path("a/map.sw"), scene::WriterLock::File::kIsThere);
+  expect_refused(fmt::format("run {} --out {}", kWalk, in("a")),
+                 "a/map.sw: another program is writing to this map");
+  EXPECT_TRUE(std::filesystem::exists(path("a/trajectory.tum")));
+}
+
 TEST_F(KnownMap, ResultsGoIntoNobodyElsesFolder) {
   ASSERT_EQ(run(fmt::format("twin {} --out {}", kWalk, in("d"))).exit_code, 0);
   const std::string frames = core::read_file(path("d/frames.csv"));
@@ -72,6 +80,10 @@ TEST_F(KnownMap, ResultsGoIntoNobodyElsesFolder) {
   expect_refused(fmt::format("run {0} --out {0}", in("d")),
                  "d: is the recording itself; expected another folder for the results");
   EXPECT_EQ(core::read_file(path("d/frames.csv")), frames);
+  folder_.write("mine/config.yaml", "verify:\n  min_inliers: 60\n");
+  expect_refused(
+      fmt::format("run {} --config {} --out {}", kWalk, in("mine/config.yaml"), in("mine")),
+      "mine/config.yaml: is there already and of no earlier run");
 }
 
 }  // namespace

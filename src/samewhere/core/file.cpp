@@ -70,11 +70,15 @@ std::string read_file(const std::filesystem::path& path) {
 
 namespace {
 
-// Where it leads to, if it is a link to something.
-std::filesystem::path behind_links(const std::filesystem::path& path) {
-  std::error_code nothing_there;
-  const std::filesystem::path target = std::filesystem::canonical(path, nothing_there);
-  return nothing_there ? path : target;
+constexpr std::string_view kStdout = "/dev/stdout";
+
+// Where it leads to, if it is a link: to something, or to where something will be.
+std::filesystem::path behind_links(std::filesystem::path path) {
+  constexpr int kMaxLinks = 40;  // as many as the system follows
+  std::error_code error;
+  for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(path, error); ++i)
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  return path;
 }
 
 // A pipe or a terminal takes bytes, and cannot be put in another's place.
@@ -86,7 +90,9 @@ bool is_stream(const std::filesystem::path& path) {
 }
 
 void write_stream(const std::filesystem::path& path, std::string_view content) {
-  const int stream = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  // not opened anew: where the output is a file that would begin at its start
+  const int stream =
+      path == kStdout ? ::dup(STDOUT_FILENO) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (stream < 0) fail(path, "cannot be written", errno);
   const int error = write_bytes(stream, content);
   ::close(stream);
@@ -96,8 +102,8 @@ void write_stream(const std::filesystem::path& path, std::string_view content) {
 }  // namespace
 
 void write_file(const std::filesystem::path& given, std::string_view content) {
-  const std::filesystem::path path = behind_links(given);
-  if (is_stream(path)) return write_stream(path, content);
+  const std::filesystem::path path = given == kStdout ? given : behind_links(given);
+  if (path == kStdout || is_stream(path)) return write_stream(path, content);
   std::filesystem::path partial = path;
   partial += ".partial";
   const int file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);

@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/stage_thread.hpp>
 
 namespace samewhere::core {
 namespace {
@@ -97,12 +97,16 @@ TEST_F(FileTest, OfALinkThatWhichItLeadsToIsWritten) {
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
   EXPECT_EQ(read_file(folder_ / "kept"), "new");
   EXPECT_EQ(num_entries(), 2);
+  fs::create_symlink("not-yet", folder_ / "ahead");
+  write_file(folder_ / "ahead", "made");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "ahead"));
+  EXPECT_EQ(read_file(folder_ / "not-yet"), "made");
 }
 
 TEST_F(FileTest, APipeIsWrittenToAndStays) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   std::string read;
-  std::thread reader([&] { read = read_file(folder_ / "pipe"); });
+  WorkerThread reader([&] { read = read_file(folder_ / "pipe"); });
   write_file(folder_ / "pipe", "bytes");
   reader.join();
   EXPECT_EQ(read, "bytes");

@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -77,6 +78,8 @@ std::string g2o_text(const PoseGraph& graph, const std::vector<long>& names) {
     if (is_named[static_cast<std::size_t>(node)]) text += fmt::format("FIX {}\n", name(node));
   }
   for (const PoseEdge& edge : graph.edges) {
+    if (!edge.is_loop && std::abs(name(edge.a) - name(edge.b)) != 1)
+      text += fmt::format("{} {} {}\n", kG2oOdometry, name(edge.a), name(edge.b));
     text += fmt::format("EDGE_{} {} {} {}{}\n", kind, name(edge.a), name(edge.b),
                         text_of(edge.a_from_b, graph.is_planar),
                         information_text(edge, graph.is_planar));

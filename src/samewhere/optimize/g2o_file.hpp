@@ -14,6 +14,9 @@ namespace samewhere::optimize {
 // the information; a planar graph as VERTEX_SE2 and EDGE_SE2. g2o measures an edge's error in the
 // frame of b and its rotation as the vector part of a quaternion, half an angle; the information is
 // turned and scaled accordingly. `names` are the numbers of the nodes, their positions if empty.
+// Odometry that does not lead from a number to the next is named by a line of our own, ODOMETRY a
+// b, which other readers skip.
+inline constexpr char kG2oOdometry[] = "ODOMETRY";
 std::string g2o_text(const PoseGraph& graph, const std::vector<long>& names = {});
 
 struct G2oGraph {
@@ -23,7 +26,8 @@ struct G2oGraph {
 };
 
 // VERTEX_SE3:QUAT, EDGE_SE3:QUAT, VERTEX_SE2, EDGE_SE2 and FIX; lines that begin with anything else
-// are counted and left out. An edge from a number to the next one is odometry, every other a loop.
+// are counted and left out. An edge from a number to the next one is odometry, and the first of two
+// numbers for each line ODOMETRY that names them; every other is a loop.
 // Throws InputError naming file, line, value and what was expected: a number that is none or not
 // finite, a line cut short, a quaternion that is no rotation, an information that is not positive
 // definite, an edge to a vertex that the file does not have, a vertex twice, a file without a

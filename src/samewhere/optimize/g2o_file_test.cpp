@@ -43,6 +43,26 @@ TEST(G2oFile, AnEdgeCostsInG2oWhatItCostsHere) {
   }
 }
 
+// A keyframe may be tracked from an older one than the last, and a loop may join the same two.
+TEST(G2oFile, OdometryStaysOdometryWhereverItLeads) {
+  core::Random random(3);
+  PoseGraph graph;
+  for (int i = 0; i < 4; ++i) graph.world_from_node.push_back(random_pose(random, 1.0));
+  const auto edge = [&](int a, int b, bool is_loop) {
+    return PoseEdge{a, b, random_pose(random, 1.0), random_information(random), is_loop};
+  };
+  graph.edges = {edge(0, 1, false), edge(0, 3, false), edge(1, 2, false), edge(0, 3, true),
+                 edge(1, 3, true)};
+  const std::filesystem::path path = testing::TempDir() + "g2o_odometry.g2o";
+  core::write_file(path, g2o_text(graph));
+  const G2oGraph found = read_g2o(path);
+  std::filesystem::remove(path);
+  EXPECT_TRUE(found.skipped.empty());
+  ASSERT_EQ(found.graph.edges.size(), graph.edges.size());
+  for (std::size_t i = 0; i < graph.edges.size(); ++i)
+    EXPECT_EQ(found.graph.edges[i].is_loop, graph.edges[i].is_loop) << "edge " << i;
+}
+
 TEST(G2oFile, HasALineForEachNodeAndEdge) {
   core::Random random(1);
   PoseGraph graph;

@@ -54,10 +54,13 @@ class Reader {
       if (type == kind->vertex) return add_vertex(line, *kind);
       if (type == kind->edge) return edges_.emplace_back(line, kind), void();
     }
-    if (type == "FIX")
+    if (type == "FIX") {
       fixed_.push_back(line);
-    else
+    } else if (type == kG2oOdometry) {
+      ++num_odometry_[{name_of(line, 1), name_of(line, 2)}];
+    } else {
       ++found_.skipped[type];
+    }
   }
 
   void add_vertex(const core::TextLine& line, const Kind& kind) {
@@ -78,8 +81,14 @@ class Reader {
     if (edge.a == edge.b)
       refuse(line, fmt::format("joins {} to itself, expected two vertices", line.words[1]));
     edge.information = information_of(line, edge, kind);
-    edge.is_loop = std::abs(name_of(line, 2) - name_of(line, 1)) != 1;
+    edge.is_loop = is_loop(name_of(line, 1), name_of(line, 2));
     found_.graph.edges.push_back(edge);
+  }
+
+  bool is_loop(long a, long b) {
+    if (std::abs(b - a) == 1) return false;
+    const auto named = num_odometry_.find({a, b});
+    return named == num_odometry_.end() || named->second-- <= 0;
   }
 
   // The number of words, and that a file is either planar or not.
@@ -162,6 +171,7 @@ class Reader {
   G2oGraph found_;
   std::map<long, int> node_of_;
   std::vector<std::pair<core::TextLine, const Kind*>> edges_;
+  std::map<std::pair<long, long>, int> num_odometry_;
   std::vector<core::TextLine> fixed_;
   const Kind* kind_ = nullptr;
 };

@@ -31,6 +31,8 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
                                            const scene::StoredMap& stored) {
   const auto& [map, extras] = stored;
   std::set<std::uint16_t> sessions;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
+    sessions.insert(map.keyframes[i].view.frame.session());
   for (const core::FramePose& frame : extras.frames) sessions.insert(frame.frame.session());
   const auto num_measured = std::count_if(extras.frames.begin(), extras.frames.end(),
                                           [](const core::FramePose& f) { return f.is_measured; });

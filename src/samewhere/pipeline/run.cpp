@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
@@ -105,8 +106,9 @@ void drop_unused_thumbnails(report::RunRecord& record) {
   record.thumbnails = std::move(used);
 }
 
-// Of frames of the known map that the ledger speaks of.
-void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& record) {
+// Of frames of the known map that the ledger speaks of. Pictures are an extra: without them the run
+// is what it is.
+void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& record) try {
   scene::MapFile file = scene::MapFile::open(map);
   for (const core::LedgerRow& row : record.ledger) {
     const core::FrameId match = row.candidate.match;
@@ -114,6 +116,8 @@ void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& r
       continue;
     if (const auto jpeg = file.thumbnail(match)) record.thumbnails[match] = *jpeg;
   }
+} catch (const core::InputError& error) {
+  spdlog::warn("{}; the report lacks its pictures", error.what());
 }
 
 void note_first_pose(const Slam& slam, report::RunRecord& record) {
@@ -130,6 +134,27 @@ void record_slam(const Slam& slam, const std::vector<std::string>& names,
   record.timings.add(slam.timings());
   record.timings.add_processor(report::kWholeFrameStage, slam.processor_ms_beside());
   drop_unused_thumbnails(record);
+}
+
+// How good it is, as figures, and the truth to be drawn with it.
+void record_figures(const MappedSlam& mapped, const Config& config, const MapPlan& plan,
+                    const core::Truth& truth, report::RunRecord& record) {
+  const Slam& slam = mapped.slam();
+  SlamFindings findings = findings_of(record, !mapped.is_metric());
+  for (const int num_edges : kChains) {
+    if (mapped.is_metric())
+      findings.odometry_chains[num_edges] =
+          odometry_chains_of(slam.map(), slam.session(), num_edges);
+  }
+  const SlamEvaluation evaluation = evaluate_slam(findings, truth);
+  record.figures = figures_of(evaluation);
+  if (evaluation.num_measured == 0 && plan.known.empty())
+    record.figures.push_back({"no start, at the end", slam.why_not_started()});
+  record.figures.push_back(
+      {"keyframes / landmarks",
+       fmt::format("{} / {}", num_live(slam.map().keyframes), num_live(slam.map().landmarks))});
+  record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
+  record.truth = aligned_truth(evaluation, truth);
 }
 
 }  // namespace
@@ -159,22 +184,8 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   record.thumbnails = mapped.take_thumbnails();
   record_slam(slam, names, record);
   if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
-  SlamFindings findings = findings_of(record, !mapped.is_metric());
-  for (const int num_edges : kChains) {
-    if (mapped.is_metric())
-      findings.odometry_chains[num_edges] =
-          odometry_chains_of(slam.map(), slam.session(), num_edges);
-  }
-  const SlamEvaluation evaluation = evaluate_slam(findings, truth);
-  record.figures = figures_of(evaluation);
-  if (evaluation.num_measured == 0 && plan.known.empty())
-    record.figures.push_back({"no start, at the end", slam.why_not_started()});
-  record.figures.push_back(
-      {"keyframes / landmarks",
-       fmt::format("{} / {}", num_live(slam.map().keyframes), num_live(slam.map().landmarks))});
-  record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
+  record_figures(mapped, config, plan, truth, record);
   feed.report();
-  record.truth = aligned_truth(evaluation, truth);
   return outcome;
 }
 

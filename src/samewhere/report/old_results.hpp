@@ -11,7 +11,8 @@ void require_folder_for_results(const std::filesystem::path& folder,
                                 const std::filesystem::path& source);
 
 // What an earlier run left there would be taken for this one's: it goes, with what `samewhere
-// dense` made of it. Other files stay, and so does `known_map` if it is one of these.
+// dense` made of it. Other files stay, and so does `known_map` if it is one of these. Throws
+// InputError if another program is writing to its map.
 void remove_old_results(const std::filesystem::path& folder,
                         const std::filesystem::path& known_map);
 

@@ -70,8 +70,11 @@ RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind)
 }
 
 RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode) {
-  if (!std::filesystem::exists(path))
-    refuse(path, fmt::format("no such file; expected a {}", kind.name));
+  std::error_code why_not;
+  if (!std::filesystem::exists(path, why_not)) {
+    refuse(path, why_not ? "cannot be opened: " + why_not.message()
+                         : fmt::format("no such file; expected a {}", kind.name));
+  }
   if (!std::filesystem::is_regular_file(path) || !is_sqlite(path))
     refuse(path, fmt::format("is no {}", kind.name));
   auto lock = mode == OpenMode::kRead
