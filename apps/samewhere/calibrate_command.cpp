@@ -124,12 +124,10 @@ void add_calibrate_command(CLI::App& app) {
   sub->footer(
       "Example:\n"
       "  samewhere calibrate boards/ --board 9x6 --square 0.025 --out camera.txt\n"
-      "The file: the 3 rows of the camera matrix, k1 k2 p1 p2 k3, width height. Pictures of "
-      "another "
-      "size are refused with it.\n"
-      "Take ten pictures or more; tilt the board differently in each and bring it to the corners "
-      "of "
-      "the picture.");
+      "The file: the 3 rows of the camera matrix, k1 k2 p1 p2 k3, width height. With it pictures\n"
+      "of another size are refused.\n"
+      "Take ten pictures or more; tilt the board differently in each and bring it to the corners\n"
+      "of the picture.");
 }
 
 }  // namespace samewhere::app
