@@ -166,6 +166,8 @@ ceres::Solver::Options graph_solver_options(int max_iterations) {
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.num_threads = 1;
   options.max_num_iterations = max_iterations;
+  // a stretch without loops lies in a flat valley: a thousandth of the cost may be metres there
+  options.function_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
   return options;
 }
