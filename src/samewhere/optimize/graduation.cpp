@@ -22,7 +22,7 @@ constexpr std::size_t kMaxQuarrels = 8;  // the longest: 45 stretches lie betwee
 constexpr std::size_t kMaxStretches = 4;
 constexpr std::size_t kMaxTrials = 3;
 constexpr double kMinGain = 3.0;  // of the limit
-constexpr double kDoubt = 0.03;    // of the limit, for each loop of a stretch: the shorter rather
+constexpr double kDoubt = 0.03;   // of the limit, for each loop of a stretch: the shorter rather
 
 double limit_of(const PoseGraph& graph, const Config& config) {
   if (graph.is_planar) return kPlanarShare * config.loop_chi2;
@@ -193,14 +193,13 @@ std::vector<Graduation::Stretch> Graduation::suspects() const {
   return found;
 }
 
-// Refuses a stretch, whatever fits then. What was believed of it counts what it would in the mean if
-// it were true, so that true loops are worth as much inside as outside; what was refused already has
-// not become a part of the one lie.
+// Refuses a stretch, whatever fits then. What was believed of it counts what it would in the mean
+// if it were true, so that true loops are worth as much inside as outside; what was refused already
+// has not become a part of the one lie.
 void Graduation::outvote(const Stretch& stretch, PoseGraphSummary& summary) {
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
     double& weight = problem_.weight(loops_[i]);
-    outvoted_[loops_[i]] =
-        weight > 0.0 ? degrees_of_freedom(graph_) + kDoubt * limit_ : limit_;
+    outvoted_[loops_[i]] = weight > 0.0 ? degrees_of_freedom(graph_) + kDoubt * limit_ : limit_;
     weight = 0.0;
   }
   ++num_stretches_;
@@ -246,8 +245,7 @@ bool Graduation::outvote_worst(PoseGraphSummary& summary) {
 }
 
 Graduation::State Graduation::state() const {
-  return {graph_.world_from_node, graph_.log_scales, problem_.weights(), outvoted_,
-          num_stretches_};
+  return {graph_.world_from_node, graph_.log_scales, problem_.weights(), outvoted_, num_stretches_};
 }
 
 void Graduation::go_back(const State& state) {

@@ -54,9 +54,9 @@ class Graduation {
   const Config& config_;
   EdgeProblem problem_;
   double limit_;
-  std::vector<std::size_t> loops_;  // edges, in the order of their later ends
+  std::vector<std::size_t> loops_;               // edges, in the order of their later ends
   std::vector<std::optional<double>> outvoted_;  // per edge: what it counts since
-  std::size_t num_stretches_ = 0;   // that were outvoted
+  std::size_t num_stretches_ = 0;                // that were outvoted
 };
 
 }  // namespace samewhere::optimize
