@@ -36,6 +36,24 @@ void Timings::add(const Timings& other) {
   for (const auto& [stage, processor_ms] : other.processor_ms_) {
     processor_ms_[stage] += processor_ms;
   }
+  for (const auto& [stage, spans_ms] : other.spans_ms_) {
+    auto& own = spans_ms_[stage];
+    own.insert(own.end(), spans_ms.begin(), spans_ms.end());
+  }
+}
+
+std::vector<double> Timings::durations_beside(const std::string& stage,
+                                              const std::string& other) const {
+  std::vector<double> beside_ms;
+  if (!spans_ms_.contains(stage) || !spans_ms_.contains(other)) return beside_ms;
+  const std::vector<Span>& others = spans_ms_.at(other);
+  for (const Span& span : spans_ms_.at(stage)) {
+    const bool is_beside = std::any_of(others.begin(), others.end(), [&](const Span& work) {
+      return work.begin < span.end && span.begin < work.end;
+    });
+    if (is_beside) beside_ms.push_back(span.end - span.begin);
+  }
+  return beside_ms;
 }
 
 double thread_processor_ms() {

@@ -27,6 +27,11 @@ class Timings {
     durations_ms_[stage].push_back(duration_ms);
     processor_ms_[stage] += processor_ms;
   }
+  // The same, of which it is known when it was, on one clock for all.
+  void add_span(const std::string& stage, double begin_ms, double end_ms, double processor_ms) {
+    add(stage, end_ms - begin_ms, processor_ms);
+    spans_ms_[stage].push_back({begin_ms, end_ms});
+  }
   // Spent for the stage by another thread, while the stage's own went on.
   void add_processor(const std::string& stage, double processor_ms) {
     processor_ms_[stage] += processor_ms;
@@ -36,10 +41,19 @@ class Timings {
   const std::map<std::string, std::vector<double>>& durations_ms() const { return durations_ms_; }
   // Of all times of a stage together.
   const std::map<std::string, double>& processor_ms() const { return processor_ms_; }
+  // Of those times of a stage whose spans are known, in order: those during which the other was at
+  // work, too.
+  std::vector<double> durations_beside(const std::string& stage, const std::string& other) const;
 
  private:
+  struct Span {
+    double begin = 0.0;
+    double end = 0.0;
+  };
+
   std::map<std::string, std::vector<double>> durations_ms_;
   std::map<std::string, double> processor_ms_;  // as many
+  std::map<std::string, std::vector<Span>> spans_ms_;
 };
 
 // Processor time of the calling thread so far.
@@ -56,9 +70,11 @@ class ScopedTimer {
   ScopedTimer(const ScopedTimer&) = delete;
   ScopedTimer& operator=(const ScopedTimer&) = delete;
   ~ScopedTimer() {
-    const std::chrono::duration<double, std::milli> elapsed =
-        std::chrono::steady_clock::now() - start_;
-    timings_.add(stage_, elapsed.count(), thread_processor_ms() - start_processor_ms_);
+    using Milliseconds = std::chrono::duration<double, std::milli>;
+    const auto now = std::chrono::steady_clock::now();
+    timings_.add_span(stage_, Milliseconds(start_.time_since_epoch()).count(),
+                      Milliseconds(now.time_since_epoch()).count(),
+                      thread_processor_ms() - start_processor_ms_);
   }
 
  private:

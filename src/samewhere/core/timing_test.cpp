@@ -66,6 +66,23 @@ TEST(Timing, AnothersDurationsComeAfterItsOwn) {
   EXPECT_EQ(own.durations_ms().at("map"), std::vector<double>{3.0});
 }
 
+TEST(Timing, TellsWhatATimeWasBeside) {
+  Timings own;
+  Timings other;
+  own.add_span("track", 10.0, 11.0, 0.5);  // ends as the work begins
+  own.add_span("track", 10.0, 12.0, 0.5);
+  own.add_span("track", 12.0, 15.0, 0.5);  // within
+  own.add("track", 7.0);                   // nobody knows when
+  own.add_span("track", 19.0, 23.0, 0.5);
+  own.add_span("track", 20.0, 25.0, 0.5);  // begins as it ends
+  other.add_span("bundle", 11.0, 20.0, 1.0);
+  own.add(other);
+  EXPECT_EQ(own.durations_beside("track", "bundle"), (std::vector<double>{2.0, 3.0, 4.0}));
+  EXPECT_EQ(own.durations_beside("bundle", "track"), std::vector<double>{9.0});
+  EXPECT_TRUE(own.durations_beside("track", "fuse").empty());
+  EXPECT_EQ(own.durations_ms().at("track").size(), 6U);
+}
+
 TEST(Timing, PeakMemoryGrowsWithAnAllocationThatIsTouched) {
   const double before_mib = peak_memory_mib();
   // more than was ever there at a time: what is free again would be used first

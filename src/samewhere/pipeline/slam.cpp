@@ -135,6 +135,8 @@ core::Timings Slam::timings() const {
   timings.add(mapping_.timings());
   timings.add(loop_closing_.timings());
   timings.add(bundling_.timings());
+  for (const double duration_ms : timings.durations_beside("track", "full bundle"))
+    timings.add("track beside full bundle", duration_ms);
   return timings;
 }
 
