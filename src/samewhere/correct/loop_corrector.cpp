@@ -120,7 +120,10 @@ Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::
   optimize::PoseGraph graph = pose_graph_of(map, config);
   const std::size_t num_before = graph.edges.size();
   const std::vector<LoopEdge> claims = claims_of(map, loop);
-  for (const auto& claim : claims) graph.edges.push_back(as_edge(claim, config));
+  for (const auto& claim : claims) {
+    graph.edges.push_back(as_edge(claim, config));
+    graph.edges.back().is_doubted = claim.cause != loop.cause;
+  }
   const optimize::PoseGraphSummary summary = solve_pose_graph(graph, config);
 
   const Answer on_claims = answer_on(claims, num_before, graph, summary);

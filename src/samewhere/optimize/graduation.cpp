@@ -10,6 +10,7 @@ namespace {
 constexpr double kGrowth = 1.4;  // of the control parameter from round to round
 constexpr int kMaxRounds = 100;  // the parameter has grown by 4e14
 constexpr double kReaches[] = {3000.0, 300.0, 30.0};  // of the limit, see call_back
+constexpr double kReachOfDoubted = 10.0;              // of the limit, see all_fit
 constexpr int kMaxChecks = 10;                        // of sides changed after the rounds
 // chi-square 99 %: 3 and 7 degrees of freedom for 6
 constexpr double kPlanarShare = 11.34 / 16.81;
@@ -51,9 +52,11 @@ Graduation::Graduation(PoseGraph& graph, const Config& config)
 }
 
 PoseGraphSummary Graduation::solve() {
-  PoseGraphSummary summary = problem_.solve(config_.graph_iterations);
-  const double worst = worst_chi2();
-  if (worst > limit_) {
+  PoseGraphSummary summary;
+  if (!all_fit(summary)) {
+    for (const std::size_t loop : loops_) problem_.weight(loop) = 1.0;
+    go_on(config_.graph_iterations, summary);
+    const double worst = worst_chi2();
     graduate(limit_ / (2.0 * worst - limit_), summary);
     settle(summary);
     for (const double reach : kReaches) call_back(reach, summary);
@@ -69,6 +72,34 @@ PoseGraphSummary Graduation::solve() {
 
 void Graduation::go_on(int max_iterations, PoseGraphSummary& summary) {
   summary.num_iterations += problem_.solve(max_iterations).num_iterations;
+}
+
+// Whether the graph holds together without the loops in doubt, and with those of them that fit it
+// then: as they had no say in where it is, they may be a little further off than others.
+bool Graduation::all_fit(PoseGraphSummary& summary) {
+  for (const std::size_t loop : loops_)
+    if (graph_.edges[loop].is_doubted) problem_.weight(loop) = 0.0;
+  summary = problem_.solve(config_.graph_iterations);
+  if (!believed_fit()) return false;
+  bool are_there_more = false;
+  for (const std::size_t loop : loops_) {
+    const PoseEdge& edge = graph_.edges[loop];
+    if (!edge.is_doubted || chi2_of(graph_, edge) > kReachOfDoubted * limit_) continue;
+    problem_.weight(loop) = 1.0;
+    are_there_more = true;
+  }
+  if (!are_there_more) return true;
+  go_on(config_.graph_iterations, summary);
+  settle(summary);
+  return believed_fit();
+}
+
+// All that are not in doubt.
+bool Graduation::believed_fit() const {
+  return std::all_of(loops_.begin(), loops_.end(), [&](std::size_t loop) {
+    const PoseEdge& edge = graph_.edges[loop];
+    return edge.is_doubted || chi2_of(graph_, edge) <= limit_;
+  });
 }
 
 double Graduation::worst_chi2() const {

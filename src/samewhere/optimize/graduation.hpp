@@ -33,6 +33,8 @@ class Graduation {
   };
 
   void go_on(int max_iterations, PoseGraphSummary& summary);
+  bool all_fit(PoseGraphSummary& summary);
+  bool believed_fit() const;
   double worst_chi2() const;
   double truncated_cost() const;
   void graduate(double control, PoseGraphSummary& summary);

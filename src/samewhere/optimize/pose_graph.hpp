@@ -19,6 +19,9 @@ struct PoseEdge {
   // In a graph with scales only: the logarithm of b's unit in units of a, and its information.
   double log_scale = 0.0;
   double scale_information = 1.0;
+  // A loop that was refused when it was asked last. While all others fit, it is believed only if it
+  // fits them; else all are asked anew.
+  bool is_doubted = false;
 };
 
 // Which of the six numbers of an error a planar graph uses: x, y and the turn about z.

@@ -173,6 +173,31 @@ TEST(PoseGraphOfLies, WithoutLiesItFindsWhatTheOthersFind) {
   }
 }
 
+TEST(PoseGraphOfLies, OneInDoubtIsAskedWhenTheRestFitsAndWhenItDoesNot) {
+  core::Random random(16);
+  const Laps walk = laps(random, 3);
+  const auto loop = static_cast<std::size_t>(3 * kLap - 1);  // the first of them
+  Laps true_one = walk;
+  true_one.graph.edges[loop].is_doubted = true;
+  EXPECT_EQ(solve_pose_graph(true_one.graph, {}).weights[loop], 1.0);
+  Laps false_one = true_one;
+  false_one.graph.edges[loop].a_from_b.translation.x() += 20.0;
+  EXPECT_EQ(solve_pose_graph(false_one.graph, {}).weights[loop], 0.0);
+  std::vector<bool> is_lie(walk.graph.edges.size(), false);
+  is_lie[loop] = true;
+  Laps honest = without(walk, is_lie);
+  solve_pose_graph(honest.graph, {});
+  EXPECT_NEAR(ate_m(false_one), ate_m(honest), 1e-3);
+  // another lies, too: all are asked
+  false_one.graph.edges[loop + 9].a_from_b.translation.x() += 20.0;
+  Laps of_two = true_one;
+  of_two.graph.edges[loop + 9] = false_one.graph.edges[loop + 9];
+  EXPECT_EQ(solve_pose_graph(of_two.graph, {}).weights[loop], 1.0);
+  const std::vector<double> weights = solve_pose_graph(false_one.graph, {}).weights;
+  EXPECT_EQ(weights[loop], 0.0);
+  EXPECT_EQ(weights[loop + 9], 0.0);
+}
+
 TEST(PoseGraphOfLies, TheOnlyLoopIsBelievedIfOdometryMayErrThatMuch) {
   core::Random random(13);
   Laps walk = laps(random, 2);
