@@ -66,12 +66,6 @@ ImpostorRule rule_of_list(const Pairs& pairs, int query_step) {
   return rule;
 }
 
-struct TowerImage {
-  std::string floor;
-  std::string clip;
-  bool is_gallery = false;
-};
-
 // Image name -> whether the data set calls it gallery.
 std::map<std::string, bool> read_splits(const std::filesystem::path& csv) {
   std::map<std::string, bool> is_gallery;
@@ -87,20 +81,6 @@ std::map<std::string, bool> read_splits(const std::filesystem::path& csv) {
     is_gallery[text.substr(0, first)] = text.substr(second + 1, third - second - 1) == "gallery";
   }
   return is_gallery;
-}
-
-std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
-  const std::map<std::string, bool> is_gallery = read_splits(folder / "dataset.csv");
-  std::vector<TowerImage> images;
-  for (const core::TextLine& line : core::read_text_lines(folder / "walk.txt")) {
-    const auto split = line.words.size() == 3 ? is_gallery.find(line.words[0]) : is_gallery.end();
-    if (split == is_gallery.end()) {
-      throw core::InputError(
-          fmt::format("{}: expected an image of dataset.csv, its floor and its clip", line.place));
-    }
-    images.push_back({line.words[1], line.words[2], split->second});
-  }
-  return images;
 }
 
 }  // namespace
@@ -119,6 +99,20 @@ std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_st
 bool is_tower(const std::filesystem::path& source) {
   return std::filesystem::exists(source / "dataset.csv") &&
          std::filesystem::exists(source / "walk.txt");
+}
+
+std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
+  const std::map<std::string, bool> is_gallery = read_splits(folder / "dataset.csv");
+  std::vector<TowerImage> images;
+  for (const core::TextLine& line : core::read_text_lines(folder / "walk.txt")) {
+    const auto split = line.words.size() == 3 ? is_gallery.find(line.words[0]) : is_gallery.end();
+    if (split == is_gallery.end()) {
+      throw core::InputError(
+          fmt::format("{}: expected an image of dataset.csv, its floor and its clip", line.place));
+    }
+    images.push_back({line.words[1], line.words[2], split->second});
+  }
+  return images;
 }
 
 ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {

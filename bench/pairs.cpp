@@ -1,0 +1,119 @@
+// What tells two views of one place from two places that only look alike, once geometry takes both
+// for one? For each source and each score of a pair: area under the ROC curve, and the share of
+// true pairs kept when 1 % and 0.1 % of the wrong ones pass.
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "labelled_pairs.hpp"
+#include "program.hpp"
+#include <samewhere/evaluate/separation.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+using verify::PairPlane;
+using verify::PairView;
+
+struct Options {
+  std::vector<std::string> sources;
+  int step = 10;
+  int window_frames = 150;
+  std::string csv_file;
+};
+
+// Of the two pictures, laid onto each other without their light, where both see; 0 if either shows
+// nothing.
+double correlation(const PairView& pair) {
+  const cv::Mat query = pair.plane(PairPlane::kQuery);
+  const cv::Mat match = pair.plane(PairPlane::kMatch);
+  const double norms = std::sqrt(query.dot(query) * match.dot(match));
+  return norms > 0.0 ? query.dot(match) / norms : 0.0;
+}
+
+// Of all that should be seen again in either view, how much is.
+double share_seen_again(const PairView& pair) {
+  const double seen = cv::sum(pair.plane(PairPlane::kAgree))[0];
+  const double missed = cv::sum(pair.plane(PairPlane::kOnlyQueryShows))[0] +
+                        cv::sum(pair.plane(PairPlane::kOnlyMatchShows))[0];
+  return seen + missed > 0.0 ? seen / (seen + missed) : 0.0;
+}
+
+constexpr std::array<const char*, 3> kScores = {"inliers", "correlation", "seen again"};
+
+// A pair that cannot be registered scores below all others.
+std::array<double, 3> scores_of(const LabelledPair& pair, const LabelledPairs& labelled) {
+  const auto num_inliers = static_cast<double>(pair.matches.size());
+  const auto view =
+      verify::register_pair(labelled.views[static_cast<std::size_t>(pair.query)],
+                            labelled.views[static_cast<std::size_t>(pair.match)], pair.matches, {});
+  if (!view) return {num_inliers, -1.0, -1.0};
+  return {num_inliers, correlation(*view), share_seen_again(*view)};
+}
+
+std::vector<std::string> row_of(const std::string& source, const char* score,
+                                const evaluate::Separation& found) {
+  return {source,
+          score,
+          std::to_string(found.num_true),
+          std::to_string(found.num_wrong),
+          fmt::format("{:.3f}", found.auc),
+          fmt::format("{:.1f} %", 100.0 * found.kept_at_1_percent),
+          fmt::format("{:.1f} %", 100.0 * found.kept_at_0_1_percent)};
+}
+
+void measure(const std::string& source, const Options& options, Table& table) {
+  const LabelledPairs labelled = labelled_pairs(source, options.step, options.window_frames);
+  std::array<std::vector<double>, 3> of_true;
+  std::array<std::vector<double>, 3> of_wrong;
+  for (const LabelledPair& pair : labelled.pairs) {
+    const std::array<double, 3> scores = scores_of(pair, labelled);
+    for (std::size_t i = 0; i < scores.size(); ++i)
+      (pair.is_same ? of_true : of_wrong)[i].push_back(scores[i]);
+  }
+  for (std::size_t i = 0; i < kScores.size(); ++i)
+    table.rows.push_back(
+        row_of(source, kScores[i], evaluate::separation_of(of_true[i], of_wrong[i])));
+}
+
+void measure_all(const Options& options) {
+  Table table{.header = {"source", "score", "true", "wrong", "AUC", "kept at 1 % wrong",
+                         "kept at 0.1 % wrong"},
+              .rows = {}};
+  for (const std::string& source : options.sources) measure(source, options, table);
+  publish(table, options.csv_file);
+}
+
+std::function<void()> set_up(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.name("pairs");
+  app.description(
+      "Pairs of views of which 20 matches agree on one geometry: how well do scores tell one "
+      "place\n"
+      "from two that look alike?");
+  app.add_option("SOURCE", options->sources,
+                 "recordings with place truth, the folder of IE Tower, or twin:PRESET?similarity=S")
+      ->required();
+  app.add_option("--step", options->step, "every so many frames is a view; IE Tower: a query")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--window", options->window_frames,
+                 "frames no further apart are no pair (evaluation.md, table of pr-v2)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--csv", options->csv_file, "write the table to this file, too");
+  return [options] { measure_all(*options); };
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  return samewhere::bench::run_program(argc, argv, samewhere::bench::set_up);
+}
