@@ -25,7 +25,6 @@ namespace samewhere::bench {
 namespace {
 
 constexpr int kShortlist = 10;
-constexpr int kMinInliers = 20;
 constexpr int kNeighbourFrames = 2;
 
 enum class Kind { kNeither, kSame, kWrong };
@@ -74,14 +73,14 @@ std::function<Kind(int, int)> kind_by_place(std::optional<core::PlaceTruthMatrix
 }
 
 // Frames in between are not rendered.
-KnownViews views_of_twin(const pipeline::Config& config, int step, int window_frames) {
+KnownViews views_of_twin(const pipeline::Config& config, const PairRule& rule) {
   const twin::Walkthrough walk(twin::parse_spec(config.source), config.twin);
   const twin::Studio studio(walk, config.twin);
-  core::Progress progress("looking at " + config.source, walk.num_frames() / step);
+  core::Progress progress("looking at " + config.source, walk.num_frames() / rule.step);
   Viewer viewer(config);
   KnownViews known;
   std::vector<int> frame_of;
-  for (int index = 0; index < walk.num_frames(); index += step) {
+  for (int index = 0; index < walk.num_frames(); index += rule.step) {
     core::stop_if_interrupted();
     core::Frame frame = walk.frame_without_pictures(index);
     frame.images = studio.pictures(index).images;
@@ -90,23 +89,24 @@ KnownViews views_of_twin(const pipeline::Config& config, int step, int window_fr
     progress.update(static_cast<int>(frame_of.size()));
   }
   ask_every_view(known);
-  known.kind = kind_by_place(twin::watched_truth(walk).places, std::move(frame_of), window_frames);
+  known.kind =
+      kind_by_place(twin::watched_truth(walk).places, std::move(frame_of), rule.window_frames);
   return known;
 }
 
-KnownViews views_of_recording(const pipeline::Config& config, int step, int window_frames) {
+KnownViews views_of_recording(const pipeline::Config& config, const PairRule& rule) {
   const auto source = pipeline::open_source_with_truth(config);
   Viewer viewer(config);
   KnownViews known;
   std::vector<int> frame_of;
   for (int index = 0; const auto frame = source->next(); ++index) {
     core::stop_if_interrupted();
-    if (index % step != 0) continue;
+    if (index % rule.step != 0) continue;
     viewer.add(*frame, known);
     frame_of.push_back(index);
   }
   ask_every_view(known);
-  known.kind = kind_by_place(source->truth().places, std::move(frame_of), window_frames);
+  known.kind = kind_by_place(source->truth().places, std::move(frame_of), rule.window_frames);
   return known;
 }
 
@@ -139,12 +139,12 @@ KnownViews views_of_tower(pipeline::Config config, int step) {
   return known;
 }
 
-KnownViews known_views(const std::string& source, int step, int window_frames) {
+KnownViews known_views(const std::string& source, const PairRule& rule) {
   pipeline::Config config = pipeline::profile("default");
   config.source = source;
-  if (is_tower(source)) return views_of_tower(config, step);
-  if (twin::is_twin_spec(source)) return views_of_twin(config, step, window_frames);
-  return views_of_recording(config, step, window_frames);
+  if (is_tower(source)) return views_of_tower(config, rule.step);
+  if (twin::is_twin_spec(source)) return views_of_twin(config, rule);
+  return views_of_recording(config, rule);
 }
 
 std::vector<int> shortlist_of(int query, Kind kind, const KnownViews& known) {
@@ -155,28 +155,29 @@ std::vector<int> shortlist_of(int query, Kind kind, const KnownViews& known) {
   return most_alike(known.descriptors, query, offered, kShortlist);
 }
 
-void add_pairs(int query, Kind kind, const KnownViews& known, std::vector<LabelledPair>& pairs) {
+void add_pairs(int query, Kind kind, const KnownViews& known, int min_matches,
+               std::vector<LabelledPair>& pairs) {
   const features::View& view = known.views[static_cast<std::size_t>(query)].view;
   for (const int match : shortlist_of(query, kind, known)) {
     const features::View& other = known.views[static_cast<std::size_t>(match)].view;
     const core::Candidate candidate{core::CandidateId(0), view.frame, other.frame};
     auto matches = verify::agreeing_matches(candidate, view, other, {});
-    if (static_cast<int>(matches.size()) < kMinInliers) continue;
+    if (static_cast<int>(matches.size()) < min_matches) continue;
     pairs.push_back({query, match, kind == Kind::kSame, std::move(matches)});
   }
 }
 
 }  // namespace
 
-LabelledPairs labelled_pairs(const std::string& source, int step, int window_frames) {
-  KnownViews known = known_views(source, step, window_frames);
+LabelledPairs labelled_pairs(const std::string& source, const PairRule& rule) {
+  KnownViews known = known_views(source, rule);
   core::Progress progress("matching " + source, static_cast<int>(known.queries.size()));
   LabelledPairs labelled;
   int num_done = 0;
   for (const int query : known.queries) {
     core::stop_if_interrupted();
-    add_pairs(query, Kind::kSame, known, labelled.pairs);
-    add_pairs(query, Kind::kWrong, known, labelled.pairs);
+    add_pairs(query, Kind::kSame, known, rule.min_matches, labelled.pairs);
+    add_pairs(query, Kind::kWrong, known, rule.min_matches, labelled.pairs);
     progress.update(++num_done);
   }
   labelled.views = std::move(known.views);

@@ -20,13 +20,18 @@ struct LabelledPairs {
   std::vector<LabelledPair> pairs;
 };
 
-// Of every `step`-th frame of a twin building or a recording with place truth; the true pairs are
-// of the same place and more than `window_frames` apart, the wrong ones of different places
-// (pr-v2). Of the folder of IE Tower: its gallery images; every `step`-th is a query; the true ones
-// are its neighbours up to 2 s away in the same clip, the wrong ones of other floors. Of each kind
-// the 10 whose descriptors (HOG) are most like the query's are measured, and those kept of which at
-// least 20 matches agree on a fundamental matrix. Throws InputError if the source cannot be read or
-// says nothing about places.
-LabelledPairs labelled_pairs(const std::string& source, int step, int window_frames);
+// Which pairs of a source are taken.
+struct PairRule {
+  int step = 10;            // every so many frames is a view; of IE Tower: every so many a query
+  int window_frames = 150;  // true and wrong pairs are further apart; of IE Tower: not asked
+  int min_matches = 20;     // fewer that agree on a fundamental matrix are no pair
+};
+
+// Of a twin building or a recording with place truth: the true pairs are of the same place, the
+// wrong ones of different places (pr-v2). Of the folder of IE Tower: its gallery images; the true
+// pairs are neighbours up to 2 s apart in the same clip, the wrong ones of two floors. Of each kind
+// the 10 whose descriptors (HOG) are most like the query's are measured. Throws InputError if the
+// source cannot be read or says nothing about places.
+LabelledPairs labelled_pairs(const std::string& source, const PairRule& rule);
 
 }  // namespace samewhere::bench

@@ -51,7 +51,7 @@ int num_of(const LabelledPairs& labelled, int query, bool is_same) {
 TEST(LabelledPairs, OfATowerNeighboursInAClipAreTrueAndFloorsThatLookAlikeAreWrong) {
   const input::TestFolder folder;
   make_tower(folder);
-  const LabelledPairs labelled = labelled_pairs(folder.root().string(), 1, 0);
+  const LabelledPairs labelled = labelled_pairs(folder.root().string(), {.step = 1});
   EXPECT_EQ(labelled.views.size(), 9U);  // the query of the data set is left out
   EXPECT_EQ(num_of(labelled, 0, true), 2);
   EXPECT_EQ(num_of(labelled, 1, true), 3);
@@ -64,15 +64,21 @@ TEST(LabelledPairs, OfATowerNeighboursInAClipAreTrueAndFloorsThatLookAlikeAreWro
 TEST(LabelledPairs, OfATowerEveryStepthViewIsAQuery) {
   const input::TestFolder folder;
   make_tower(folder);
-  const LabelledPairs labelled = labelled_pairs(folder.root().string(), 4, 0);
+  const LabelledPairs labelled = labelled_pairs(folder.root().string(), {.step = 4});
   EXPECT_EQ(labelled.views.size(), 9U);
   for (const LabelledPair& pair : labelled.pairs) EXPECT_EQ(pair.query % 4, 0);
+}
+
+TEST(LabelledPairs, PairsOfFewerMatchesAreLeftOut) {
+  const input::TestFolder folder;
+  make_tower(folder);
+  EXPECT_TRUE(labelled_pairs(folder.root().string(), {.min_matches = 5000}).pairs.empty());
 }
 
 TEST(LabelledPairs, ARecordingWithoutPlaceTruthIsRefused) {
   const input::TestFolder folder;
   for (int i = 0; i < 2; ++i) folder.write_png(fmt::format("{}.png", i), wall(1));
-  EXPECT_THROW(labelled_pairs(folder.root().string(), 1, 0), core::InputError);
+  EXPECT_THROW(labelled_pairs(folder.root().string(), {.step = 1}), core::InputError);
 }
 
 }  // namespace

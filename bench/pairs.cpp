@@ -23,8 +23,7 @@ using verify::PairView;
 
 struct Options {
   std::vector<std::string> sources;
-  int step = 10;
-  int window_frames = 150;
+  PairRule rule;
   std::string csv_file;
 };
 
@@ -59,17 +58,21 @@ std::array<double, 3> scores_of(const LabelledPair& pair, const LabelledPairs& l
 
 std::vector<std::string> row_of(const std::string& source, const char* score,
                                 const evaluate::Separation& found) {
+  const bool is_known = found.num_true > 0 && found.num_wrong > 0;
+  const auto share = [is_known](double ratio) {
+    return is_known ? fmt::format("{:.1f} %", 100.0 * ratio) : "-";
+  };
   return {source,
           score,
           std::to_string(found.num_true),
           std::to_string(found.num_wrong),
-          fmt::format("{:.3f}", found.auc),
-          fmt::format("{:.1f} %", 100.0 * found.kept_at_1_percent),
-          fmt::format("{:.1f} %", 100.0 * found.kept_at_0_1_percent)};
+          is_known ? fmt::format("{:.3f}", found.auc) : "-",
+          share(found.kept_at_1_percent),
+          share(found.kept_at_0_1_percent)};
 }
 
 void measure(const std::string& source, const Options& options, Table& table) {
-  const LabelledPairs labelled = labelled_pairs(source, options.step, options.window_frames);
+  const LabelledPairs labelled = labelled_pairs(source, options.rule);
   std::array<std::vector<double>, 3> of_true;
   std::array<std::vector<double>, 3> of_wrong;
   for (const LabelledPair& pair : labelled.pairs) {
@@ -94,18 +97,22 @@ std::function<void()> set_up(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.name("pairs");
   app.description(
-      "Pairs of views of which 20 matches agree on one geometry: how well do scores tell one "
+      "Pairs of views that one geometry explains: how well do scores tell one "
       "place\n"
       "from two that look alike?");
   app.add_option("SOURCE", options->sources,
                  "recordings with place truth, the folder of IE Tower, or twin:PRESET?similarity=S")
       ->required();
-  app.add_option("--step", options->step, "every so many frames is a view; IE Tower: a query")
+  app.add_option("--step", options->rule.step, "every so many frames is a view; IE Tower: a query")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--window", options->window_frames,
+  app.add_option("--window", options->rule.window_frames,
                  "frames no further apart are no pair (evaluation.md, table of pr-v2)")
       ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--min-matches", options->rule.min_matches,
+                 "pairs of which fewer matches agree on one geometry are left out")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--csv", options->csv_file, "write the table to this file, too");
   return [options] { measure_all(*options); };
