@@ -53,21 +53,24 @@ Graduation::Graduation(PoseGraph& graph, const Config& config)
 
 PoseGraphSummary Graduation::solve() {
   PoseGraphSummary summary;
-  if (!all_fit(summary)) {
-    for (const std::size_t loop : loops_) problem_.weight(loop) = 1.0;
-    go_on(config_.graph_iterations, summary);
-    const double worst = worst_chi2();
-    graduate(limit_ / (2.0 * worst - limit_), summary);
-    settle(summary);
-    for (const double reach : kReaches) call_back(reach, summary);
-    while (outvote_worst(summary)) {
-    }
-  }
+  if (!all_fit(summary)) ask_all(summary);
   summary.weights = problem_.weights();
   summary.final_cost = 0.0;
   for (std::size_t i = 0; i < graph_.edges.size(); ++i)
     summary.final_cost += 0.5 * summary.weights[i] * chi2_of(graph_, graph_.edges[i]);
   return summary;
+}
+
+void Graduation::ask_all(PoseGraphSummary& summary) {
+  for (const std::size_t loop : loops_) problem_.weight(loop) = 1.0;
+  go_on(config_.graph_iterations, summary);
+  const double worst = worst_chi2();
+  if (worst <= limit_) return;  // those in doubt have mended the rest
+  graduate(limit_ / (2.0 * worst - limit_), summary);
+  settle(summary);
+  for (const double reach : kReaches) call_back(reach, summary);
+  while (outvote_worst(summary)) {
+  }
 }
 
 void Graduation::go_on(int max_iterations, PoseGraphSummary& summary) {

@@ -32,6 +32,7 @@ class Graduation {
     std::size_t end = 0;
   };
 
+  void ask_all(PoseGraphSummary& summary);
   void go_on(int max_iterations, PoseGraphSummary& summary);
   bool all_fit(PoseGraphSummary& summary);
   bool believed_fit() const;

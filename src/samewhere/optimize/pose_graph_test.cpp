@@ -192,10 +192,35 @@ TEST(PoseGraphOfLies, OneInDoubtIsAskedWhenTheRestFitsAndWhenItDoesNot) {
   false_one.graph.edges[loop + 9].a_from_b.translation.x() += 20.0;
   Laps of_two = true_one;
   of_two.graph.edges[loop + 9] = false_one.graph.edges[loop + 9];
-  EXPECT_EQ(solve_pose_graph(of_two.graph, {}).weights[loop], 1.0);
+  const std::vector<double> of_one_lie = solve_pose_graph(of_two.graph, {}).weights;
+  EXPECT_EQ(of_one_lie[loop], 1.0);
+  EXPECT_EQ(of_one_lie[loop + 9], 0.0);
   const std::vector<double> weights = solve_pose_graph(false_one.graph, {}).weights;
   EXPECT_EQ(weights[loop], 0.0);
   EXPECT_EQ(weights[loop + 9], 0.0);
+}
+
+// Alone, the loop not in doubt is bent a little too much; together they bend the odometry.
+TEST(PoseGraphOfLies, ALoopThatFitsOnlyBesideOneInDoubtIsBelievedWithIt) {
+  constexpr int kSteps = 10;
+  const Config config;
+  const double gap_m = kSigma_m * (kSteps + 1) * std::sqrt(1.05 * config.loop_chi2);
+  PoseGraph graph;
+  graph.world_from_node = {core::Rigid3{}};
+  const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
+  for (int i = 1; i <= kSteps; ++i) {
+    graph.world_from_node.push_back(graph.world_from_node.back() * step);
+    graph.edges.push_back({i - 1, i, step, honest_information(), false});
+  }
+  const core::Rigid3 told{Eigen::Quaterniond::Identity(), {0.0, 0.0, kSteps + gap_m}};
+  graph.edges.push_back({0, kSteps, told, honest_information(), true});
+  PoseGraph alone = graph;
+  EXPECT_EQ(solve_pose_graph(alone, config).weights.back(), 0.0);
+  graph.edges.push_back(graph.edges.back());
+  graph.edges.back().is_doubted = true;
+  const std::vector<double> weights = solve_pose_graph(graph, config).weights;
+  EXPECT_EQ(weights[kSteps], 1.0);
+  EXPECT_EQ(weights[kSteps + 1], 1.0);
 }
 
 TEST(PoseGraphOfLies, TheOnlyLoopIsBelievedIfOdometryMayErrThatMuch) {
