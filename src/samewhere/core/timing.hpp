@@ -41,8 +41,7 @@ class Timings {
   const std::map<std::string, std::vector<double>>& durations_ms() const { return durations_ms_; }
   // Of all times of a stage together.
   const std::map<std::string, double>& processor_ms() const { return processor_ms_; }
-  // Of those times of a stage whose spans are known, in order: those during which the other was at
-  // work, too.
+  // Of those times of a stage whose spans are known: those during which the other was at work, too.
   std::vector<double> durations_beside(const std::string& stage, const std::string& other) const;
 
  private:

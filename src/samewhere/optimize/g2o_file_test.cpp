@@ -43,7 +43,8 @@ TEST(G2oFile, AnEdgeCostsInG2oWhatItCostsHere) {
   }
 }
 
-// A keyframe may be tracked from an older one than the last, and a loop may join the same two.
+// A keyframe may be tracked from an older one than the last, and a loop may join the same two, be
+// they neighbours or not.
 TEST(G2oFile, OdometryStaysOdometryWhereverItLeads) {
   core::Random random(3);
   PoseGraph graph;
@@ -52,7 +53,7 @@ TEST(G2oFile, OdometryStaysOdometryWhereverItLeads) {
     return PoseEdge{a, b, random_pose(random, 1.0), random_information(random), is_loop};
   };
   graph.edges = {edge(0, 1, false), edge(0, 3, false), edge(1, 2, false), edge(0, 3, true),
-                 edge(1, 3, true)};
+                 edge(1, 3, true),  edge(2, 1, true),  edge(3, 2, false), edge(2, 3, true)};
   const std::filesystem::path path = testing::TempDir() + "g2o_odometry.g2o";
   core::write_file(path, g2o_text(graph));
   const G2oGraph found = read_g2o(path);
@@ -177,6 +178,7 @@ TEST_F(G2oRead, WhatIsBrokenIsNamedWithItsLine) {
       {vertices + "VERTEX_SE3:QUAT 3 0 0 0 0 0 0 1\n" + edge, "expected all of one kind"},
       {"VERTEX_SE3:QUAT 3 0 0 0 0 0 0 2\n" + edge, "line 1: quaternion of norm 2, expected 1"},
       {vertices + edge + "FIX\n", "line 4: found no number"},
+      {vertices + edge + std::string(kG2oOdometry) + " 1\n", "line 4: found 1 values, expected 2"},
       {vertices + edge + "FIX 9\n", "line 4: names vertex 9"}};
   for (const auto& [text, expected] : broken) {
     EXPECT_THAT(complaint(text), HasSubstr(expected)) << text;

@@ -57,7 +57,10 @@ class Reader {
     if (type == "FIX") {
       fixed_.push_back(line);
     } else if (type == kG2oOdometry) {
-      ++num_odometry_[{name_of(line, 1), name_of(line, 2)}];
+      if (line.words.size() != 3)
+        refuse(line,
+               fmt::format("found {} values, expected 2, the vertices", line.words.size() - 1));
+      ++num_odometry_[undirected(name_of(line, 1), name_of(line, 2))];
     } else {
       ++found_.skipped[type];
     }
@@ -81,14 +84,18 @@ class Reader {
     if (edge.a == edge.b)
       refuse(line, fmt::format("joins {} to itself, expected two vertices", line.words[1]));
     edge.information = information_of(line, edge, kind);
-    edge.is_loop = is_loop(name_of(line, 1), name_of(line, 2));
+    edge.is_loop = is_loop(undirected(name_of(line, 1), name_of(line, 2)));
     found_.graph.edges.push_back(edge);
   }
 
-  bool is_loop(long a, long b) {
-    if (std::abs(b - a) == 1) return false;
-    const auto named = num_odometry_.find({a, b});
-    return named == num_odometry_.end() || named->second-- <= 0;
+  using Ends = std::pair<long, long>;  // of an edge, the lower first
+
+  static Ends undirected(long a, long b) { return std::minmax(a, b); }
+
+  // Between neighbours the first edge is odometry, as everybody writes it.
+  bool is_loop(const Ends& ends) {
+    const int left = num_odometry_.try_emplace(ends, ends.second - ends.first == 1).first->second--;
+    return left <= 0;
   }
 
   // The number of words, and that a file is either planar or not.
@@ -171,7 +178,7 @@ class Reader {
   G2oGraph found_;
   std::map<long, int> node_of_;
   std::vector<std::pair<core::TextLine, const Kind*>> edges_;
-  std::map<std::pair<long, long>, int> num_odometry_;
+  std::map<Ends, int> num_odometry_;  // still to come
   std::vector<core::TextLine> fixed_;
   const Kind* kind_ = nullptr;
 };
