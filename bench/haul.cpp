@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include "program.hpp"
 #include <samewhere/core/progress.hpp>
@@ -29,12 +30,15 @@ struct Settings {
   std::string csv_file;
 };
 
+constexpr double kBytesPerMib = 1024.0 * 1024.0;
+
 struct Memory {
   double own_mib = 0.0;
+  double used_mib = 0.0;  // of it: what the program asked for and has not given back
   double mapped_mib = 0.0;
 };
 
-// Of this process now (proc(5)).
+// Of this process now (proc(5), mallinfo(3)).
 Memory memory_now() {
   std::ifstream status("/proc/self/status");
   Memory memory;
@@ -44,6 +48,8 @@ Memory memory_now() {
     if (name == "RssFile:" && status >> kib) memory.mapped_mib = kib / 1024.0;
     status.ignore(1000, '\n');
   }
+  const struct mallinfo2 heap = mallinfo2();
+  memory.used_mib = static_cast<double>(heap.uordblks + heap.hblkhd) / kBytesPerMib;
   return memory;
 }
 
@@ -136,7 +142,8 @@ class Haul {
          std::to_string(num_live_keyframes_), std::to_string(num_live_landmarks_),
          std::to_string(num_loops_), fmt::format("{:.1f} / {:.1f}", own.median_ms, own.p99_ms),
          fmt::format("{:.1f} / {:.1f}", wall.median_ms, wall.p99_ms),
-         fmt::format("{:.0f}", memory.own_mib), fmt::format("{:.0f}", memory.mapped_mib)});
+         fmt::format("{:.0f}", memory.own_mib), fmt::format("{:.0f}", memory.used_mib),
+         fmt::format("{:.0f}", memory.mapped_mib)});
     part_ = {};
   }
 
@@ -148,7 +155,7 @@ class Haul {
   Part part_;
   Table table_{
       {"frames", "keyframes", "live", "landmarks", "loops", "tracking, processor ms median / p99",
-       "wall ms median / p99", "memory MiB", "mapped files MiB"},
+       "wall ms median / p99", "memory MiB", "in use MiB", "mapped files MiB"},
       {}};
   std::unique_ptr<core::Source> source_;
   pipeline::Slam slam_;
