@@ -31,8 +31,7 @@ struct Settings {
 // in metres, as always.
 void doubt_odometry(pipeline::Config& config, double factor) {
   track::DriftConfig& drift = config.track.drift;
-  for (double* sigma : {&drift.base_m, &drift.per_metre, &drift.base_rad, &drift.per_radian})
-    *sigma *= factor;
+  for (double* sigma : {&drift.factor, &drift.per_metre, &drift.per_radian}) *sigma *= factor;
   config.verify.max_odometry_chi_square /= factor * factor;
 }
 

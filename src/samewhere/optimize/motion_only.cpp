@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -12,6 +14,9 @@ namespace {
 
 constexpr int kMinInliers = 6;
 constexpr double kConverged = 1e-8;
+constexpr int kPoseNumbers = 6;
+constexpr double kCell = 0.15;         // side of a part of the picture, tangent of an angle
+constexpr double kMinVariance = 1e-4;  // of a residual: no picture is without noise
 
 Reprojection reproject_to(const MotionProblem& problem, const MotionObservation& seen,
                           const Eigen::Vector3d& point_in_camera) {
@@ -24,8 +29,9 @@ struct NormalEquations {
   core::Vector6d gradient = core::Vector6d::Zero();
 };
 
-NormalEquations linearise(const MotionProblem& problem, const MotionResult& result) {
-  NormalEquations sum;
+// visit(observation, residual, its weight) for each inlier in front of the camera.
+template <class Visit>
+void for_each_inlier(const MotionProblem& problem, const MotionResult& result, const Visit& visit) {
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
     if (!result.is_inlier[i]) continue;
     const MotionResidual r =
@@ -34,18 +40,29 @@ NormalEquations linearise(const MotionProblem& problem, const MotionResult& resu
     const double squared = r.value.squaredNorm();
     const double limit = kChiSquare95[r.size];
     const double weight = squared <= limit ? 1.0 : std::sqrt(limit / squared);  // Huber
+    visit(problem.observations[i], r, weight);
+  }
+}
+
+NormalEquations linearise(const MotionProblem& problem, const MotionResult& result) {
+  NormalEquations sum;
+  for_each_inlier(problem, result, [&](const auto&, const MotionResidual& r, double weight) {
     sum.hessian += weight * r.jacobian.transpose() * r.jacobian;
     sum.gradient += weight * r.jacobian.transpose() * r.value;
-  }
+  });
   return sum;
+}
+
+// a little damping: a direction without evidence (all points on a line) must not run away
+core::Matrix6d damped(core::Matrix6d hessian) {
+  hessian.diagonal().array() += 1e-6 * hessian.diagonal().array().maxCoeff();
+  return hessian;
 }
 
 void descend(const MotionProblem& problem, MotionResult& result, int iterations) {
   for (int i = 0; i < iterations; ++i) {
-    NormalEquations sum = linearise(problem, result);
-    // a little damping: a direction without evidence (all points on a line) must not run away
-    sum.hessian.diagonal().array() += 1e-6 * sum.hessian.diagonal().array().maxCoeff();
-    const Eigen::LDLT<core::Matrix6d> factor(sum.hessian);
+    const NormalEquations sum = linearise(problem, result);
+    const Eigen::LDLT<core::Matrix6d> factor(damped(sum.hessian));
     const core::Vector6d step = factor.solve(-sum.gradient);
     if (!step.allFinite()) return;
     result.camera_from_world = retract(result.camera_from_world, step);
@@ -67,6 +84,33 @@ void sort_inliers(const MotionProblem& problem, MotionResult& result) {
   }
   result.reprojection_rmse_px =
       result.num_inliers > 0 ? std::sqrt(sum_squared_px / result.num_inliers) : 0.0;
+}
+
+using Cell = std::pair<int, int>;
+
+Cell cell_of(const MotionProblem& problem, const MotionObservation& seen) {
+  const core::PinholeRadtan& camera = problem.intrinsics;
+  const auto index = [](double tangent) { return static_cast<int>(std::floor(tangent / kCell)); };
+  return {index((seen.undistorted_px.x() - camera.cx_px) / camera.fx_px),
+          index((seen.undistorted_px.y() - camera.cy_px) / camera.fy_px)};
+}
+
+core::Matrix6d covariance_of(const MotionProblem& problem, const MotionResult& result) {
+  core::Matrix6d hessian = core::Matrix6d::Zero();
+  double squares = 0.0;
+  int num_spare = -kPoseNumbers;
+  std::map<Cell, core::Vector6d> pulls;  // what the residuals of a cell ask of the pose
+  for_each_inlier(problem, result, [&](const auto& seen, const MotionResidual& r, double weight) {
+    hessian += weight * r.jacobian.transpose() * r.jacobian;
+    squares += weight * r.value.squaredNorm();
+    num_spare += r.size;
+    const auto cell = pulls.try_emplace(cell_of(problem, seen), core::Vector6d::Zero()).first;
+    cell->second += weight * r.jacobian.transpose() * r.value;
+  });
+  core::Matrix6d spread = std::max(squares / std::max(num_spare, 1), kMinVariance) * hessian;
+  for (const auto& [cell, pull] : pulls) spread += pull * pull.transpose();
+  const core::Matrix6d inverse = damped(hessian).ldlt().solve(core::Matrix6d::Identity());
+  return inverse * spread * inverse;
 }
 
 }  // namespace
@@ -98,6 +142,7 @@ MotionResult refine_pose(const MotionProblem& problem, const core::Rigid3& camer
     }
   }
   sort_inliers(problem, result);
+  if (result.num_inliers >= kMinInliers) result.covariance = covariance_of(problem, result);
   return result;
 }
 

@@ -31,6 +31,11 @@ struct MotionResult {
   int num_inliers = 0;
   double reprojection_rmse_px =
       0.0;  // of the inliers, without the right picture; 0 if there are none
+  // Of the pose by retract(), from the residuals of the inliers, not from sigma_px. Two parts are
+  // added: what they leave open if they are independent, and what they leave open if those in the
+  // same part of the picture err together (sandwich estimate over clusters; Liang and Zeger,
+  // Biometrika 1986). The points are taken as known. Identity if nothing was found.
+  core::Matrix6d covariance = core::Matrix6d::Identity();
 };
 
 // The pose that minimises the reprojection error of the points, which stay fixed. Gauss-Newton with

@@ -178,12 +178,49 @@ TEST(MotionOnly, FindsThePoseDespiteOutliers) {
   }
 }
 
+// Mean of error' covariance^-1 error over many pictures, each with errors of its own and with such
+// as the 24 parts of a picture have in common.
+double mean_normalised_square(double own_px, double shared_px) {
+  constexpr int kNumPictures = 200;
+  double sum = 0.0;
+  for (std::uint64_t seed = 0; seed < kNumPictures; ++seed) {
+    core::Random random(seed);
+    const core::Rigid3 truth = random_pose(random);
+    MotionProblem problem = random_motion(random, truth, own_px, 0.0);
+    std::array<Eigen::Vector2d, 24> shared;
+    for (auto& error : shared)
+      error = shared_px * Eigen::Vector2d(random.gaussian(), random.gaussian());
+    for (auto& seen : problem.observations) {
+      const auto column = std::clamp(static_cast<int>(seen.undistorted_px.x() / 107.0), 0, 5);
+      const auto row = std::clamp(static_cast<int>(seen.undistorted_px.y() / 120.0), 0, 3);
+      const Eigen::Vector2d& error = shared[static_cast<std::size_t>(6 * row + column)];
+      seen.undistorted_px += error;
+      seen.right_x_px += error.x();
+    }
+    const MotionResult found = refine_pose(problem, truth, {});
+    core::Vector6d error;
+    error << found.camera_from_world.translation - truth.translation,
+        core::log_so3(found.camera_from_world.rotation * truth.rotation.conjugate());
+    sum += error.dot(found.covariance.ldlt().solve(error));
+  }
+  return sum / kNumPictures;
+}
+
+// Of six numbers. Where nothing is shared both parts of the covariance say the same, and it is
+// twice as large as the errors are.
+TEST(MotionOnly, ItsCovarianceTellsErrorsThatPartsOfThePictureShareAndThoseTheyDoNot) {
+  EXPECT_NEAR(mean_normalised_square(0.5, 0.0), 3.0, 1.0);
+  EXPECT_NEAR(mean_normalised_square(0.05, 0.0), 3.0, 1.0);
+  EXPECT_LT(mean_normalised_square(0.3, 0.5), 14.0);
+}
+
 TEST(MotionOnly, WithoutEvidenceThePoseStays) {
   core::Random random(1);
   const core::Rigid3 start = random_pose(random);
   const MotionResult result = refine_pose({{640, 480, 500, 500, 320, 240}, 0.075, {}}, start, {});
   EXPECT_EQ(result.num_inliers, 0);
   EXPECT_EQ(result.camera_from_world.matrix(), start.matrix());
+  EXPECT_EQ(result.covariance, core::Matrix6d(core::Matrix6d::Identity()));
 }
 
 }  // namespace

@@ -179,11 +179,12 @@ void Tracking::follow(map::TrackedView& tracked) {
 }
 
 core::FramePose Tracking::relative_to(core::KeyframeId reference, core::FramePose pose) const {
+  const core::Rigid3 from_old =
+      inverse(world_from_body(map_, reference)) * world_from_body(map_, pose.reference_keyframe);
+  pose.information = track::seen_from(from_old, pose.information);
   pose.reference_from_frame = inverse(world_from_body(map_, reference)) * world_from(pose);
   pose.reference_keyframe = reference;
   pose.log_scale = map_.at(reference).log_scale;
-  pose.information = track::odometry_information(
-      pose.reference_from_frame, pose.status == core::FrameStatus::kWeak, config_.track.drift);
   return pose;
 }
 

@@ -4,24 +4,25 @@
 
 namespace samewhere::track {
 
-// Standard deviations of the odometry between a frame and its reference keyframe.
+// How sure odometry may be of where a frame is relative to its reference keyframe.
 struct DriftConfig {
-  double base_m = 0.01;
-  double per_metre = 0.02;
-  double base_rad = 0.004;
-  double per_radian = 0.02;
+  double factor = 2.0;
+  double per_metre = 0.01;
+  double per_radian = 0.01;
   double weak_factor = 3.0;
 };
 
 inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
-  visit("base_m", config.base_m,
-        {.help = "error of any measured pose, metres", .min = 1e-6, .max = 10.0});
+  visit("factor", config.factor,
+        {.help = "errors of odometry are this many times what the residuals of a frame leave open",
+         .min = 0.01,
+         .max = 100.0});
   visit("per_metre", config.per_metre,
-        {.help = "error per metre moved, metres", .min = 0.0, .max = 1.0});
-  visit("base_rad", config.base_rad,
-        {.help = "error of any measured pose, radians", .min = 1e-6, .max = 3.0});
+        {.help = "error per metre moved, of a camera that is calibrated as well as most, metres",
+         .min = 0.0,
+         .max = 1.0});
   visit("per_radian", config.per_radian,
-        {.help = "error per radian turned, radians", .min = 0.0, .max = 1.0});
+        {.help = "the same per radian turned, radians", .min = 0.0, .max = 1.0});
   visit("weak_factor", config.weak_factor,
         {.help = "all errors times this while tracking is weak", .min = 1.0, .max = 100.0});
 }

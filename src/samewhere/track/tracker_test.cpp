@@ -129,18 +129,5 @@ TEST_F(TestTracker, FewLandmarksMakeAWeakPose) {
   EXPECT_EQ(Tracker(strict).track(view, map_, moved_)->pose.status, core::FrameStatus::kWeak);
 }
 
-TEST(DriftModel, IsLessSureTheFartherAndTheWeaker) {
-  const DriftConfig config;
-  const core::Rigid3 near{Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0}};
-  const core::Rigid3 far{core::exp_so3({0.0, 1.0, 0.0}), {2.0, 0.0, 0.0}};
-  const core::Matrix6d of_near = odometry_information(near, false, config);
-  const core::Matrix6d of_far = odometry_information(far, false, config);
-  EXPECT_NEAR(of_near(0, 0), 1.0 / std::pow(config.base_m + 0.1 * config.per_metre, 2), 1e-6);
-  for (int i = 0; i < 6; ++i) {
-    EXPECT_GT(of_near(i, i), of_far(i, i));
-    EXPECT_GT(of_far(i, i), odometry_information(far, true, config)(i, i));
-  }
-}
-
 }  // namespace
 }  // namespace samewhere::track
