@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include <samewhere/core/background.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/pipeline/slam.hpp>
@@ -31,10 +32,12 @@ std::unique_ptr<LoopLink> link_to(LoopClosing& stage, const Config& config,
       config.threads, config.map.loop_lag_keyframes, hooks.dawdle);
 }
 
-// One full bundle is under way at most.
+// One full bundle is under way at most. It takes seconds and tracking is to feel nothing of it.
 std::unique_ptr<BundleLink> link_to(Bundling& stage, const Config& config, const SlamHooks& hooks) {
   return link_to<BundleAll, scene::Edit>(
-      [&stage](const BundleAll& message, const BundleLink::Reply& reply) {
+      [&stage, in_thread = config.threads](const BundleAll& message,
+                                           const BundleLink::Reply& reply) {
+        if (in_thread) core::work_in_background();
         reply(stage.answer(message));
       },
       config.threads, 1, hooks.dawdle);
