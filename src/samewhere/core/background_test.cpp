@@ -10,18 +10,18 @@
 namespace samewhere::core {
 namespace {
 
-int priority_of_this_thread() { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); }
+int own_priority() { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); }
 
 TEST(Background, TheThreadThatAsksGivesWayAndNoOther) {
-  const int before = priority_of_this_thread();
+  const int before = own_priority();
   int of_worker = -100;
   WorkerThread worker([&] {
     work_in_background();
-    of_worker = priority_of_this_thread();
+    of_worker = own_priority();
   });
   worker.join();
   EXPECT_GT(of_worker, before);
-  EXPECT_EQ(priority_of_this_thread(), before);
+  EXPECT_EQ(own_priority(), before);
 }
 
 }  // namespace
