@@ -9,9 +9,6 @@
 #include <samewhere/core/text_file.hpp>
 
 namespace samewhere::core {
-namespace {
-
-// A word fit for a message: a binary file read by mistake has words of any length and any bytes.
 std::string printable(const std::string& word) {
   constexpr std::size_t kMaxLength = 40;
   std::string text = word.substr(0, kMaxLength);
@@ -20,8 +17,6 @@ std::string printable(const std::string& word) {
   }
   return word.size() > kMaxLength ? text + "..." : text;
 }
-
-}  // namespace
 
 std::vector<TextLine> read_text_lines(const std::filesystem::path& path) {
   std::istringstream text(read_file(path));

@@ -17,6 +17,9 @@ struct TextLine {
 // be read.
 std::vector<TextLine> read_text_lines(const std::filesystem::path& path);
 
+// A word fit for a message: a binary file read by mistake has words of any length and any bytes.
+std::string printable(const std::string& word);
+
 // The word as a finite number. Throws InputError naming the line and the word found.
 double finite_number(const TextLine& line, std::size_t column);
 

@@ -265,7 +265,7 @@ PoseGraphSummary EdgeProblem::solve(int max_iterations) {
   graph_.log_scales = log_scales_;
   return {summary.initial_cost,
           summary.final_cost,
-          static_cast<int>(summary.iterations.size()) - 1,
+          std::max(0, static_cast<int>(summary.iterations.size()) - 1),
           {}};
 }
 

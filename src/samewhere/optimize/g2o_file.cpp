@@ -41,6 +41,13 @@ std::string information_text(const PoseEdge& edge, bool is_planar) {
   return upper_triangle(Eigen::Matrix3d(full(kPlanarRows, kPlanarRows)));
 }
 
+}  // namespace
+
+core::Matrix6d g2o_information(const PoseEdge& edge) {
+  const core::Matrix6d matrix = ours_from_g2o(edge, false);
+  return matrix.transpose() * edge.information * matrix;
+}
+
 std::vector<bool> nodes_with_edges(const PoseGraph& graph) {
   std::vector<bool> is_named(graph.world_from_node.size(), false);
   for (const PoseEdge& edge : graph.edges) {
@@ -51,13 +58,6 @@ std::vector<bool> nodes_with_edges(const PoseGraph& graph) {
     }
   }
   return is_named;
-}
-
-}  // namespace
-
-core::Matrix6d g2o_information(const PoseEdge& edge) {
-  const core::Matrix6d matrix = ours_from_g2o(edge, false);
-  return matrix.transpose() * edge.information * matrix;
 }
 
 std::string g2o_text(const PoseGraph& graph, const std::vector<long>& names) {

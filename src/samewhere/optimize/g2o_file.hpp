@@ -16,22 +16,25 @@ namespace samewhere::optimize {
 // turned and scaled accordingly. `names` are the numbers of the nodes, their positions if empty.
 // Odometry that does not lead from a number to the next is named by a line of our own, ODOMETRY a
 // b, which other readers skip.
+// Nodes that no edge names are left out.
 inline constexpr char kG2oOdometry[] = "ODOMETRY";
 std::string g2o_text(const PoseGraph& graph, const std::vector<long>& names = {});
 
+std::vector<bool> nodes_with_edges(const PoseGraph& graph);
+
 struct G2oGraph {
   PoseGraph graph;
-  std::vector<long> names;             // of the nodes, as the file numbers them
+  std::vector<long> names;             // of the nodes, as the file numbers them, ascending
   std::map<std::string, int> skipped;  // lines of a type that is not known, by type
 };
 
 // VERTEX_SE3:QUAT, EDGE_SE3:QUAT, VERTEX_SE2, EDGE_SE2 and FIX; lines that begin with anything else
-// are counted and left out. An edge from a number to the next one is odometry, and the first of two
-// numbers for each line ODOMETRY that names them; every other is a loop.
-// Throws InputError naming file, line, value and what was expected: a number that is none or not
-// finite, a line cut short, a quaternion that is no rotation, an information that is not positive
-// definite, an edge to a vertex that the file does not have, a vertex twice, a file without a
-// vertex or an edge, or with planar and spatial ones.
+// are counted and left out. The first edge between a number and the next is odometry, and as many
+// between two numbers as lines ODOMETRY name them; every other is a loop.
+// Throws InputError naming file, line, value and what was expected: a number that is none, not
+// finite or of a pose beyond 1e9, a line cut short, a quaternion that is no rotation, an
+// information that is not positive definite, an edge to a vertex that the file does not have, a
+// vertex twice, a file without a vertex or an edge, or with planar and spatial ones.
 G2oGraph read_g2o(const std::filesystem::path& path);
 
 // Information of `edge` for g2o's error instead of ours.

@@ -151,6 +151,30 @@ TEST_F(G2oRead, WhatWasWrittenComesBackInSpaceAndInThePlane) {
   }
 }
 
+TEST_F(G2oRead, TheOrderOfTheLinesOfVerticesIsNothing) {
+  core::Random random(4);
+  const std::string text = g2o_text(ring(random, false), {10, 11, 12, 13, 14, 15});
+  const auto lines_with = [&](bool is_vertex) {
+    std::vector<std::string> lines;
+    std::istringstream all(text);
+    for (std::string line; std::getline(all, line);)
+      if (line.starts_with("VERTEX") == is_vertex) lines.push_back(line + "\n");
+    return lines;
+  };
+  std::string turned_round;
+  for (const std::string& line : lines_with(true)) turned_round.insert(0, line);
+  for (const std::string& line : lines_with(false)) turned_round += line;
+  ASSERT_NE(turned_round, text);
+  EXPECT_EQ(g2o_text(read(turned_round).graph, read(turned_round).names),
+            g2o_text(read(text).graph, read(text).names));
+}
+
+TEST_F(G2oRead, EachVertexOfALineFixIsHeld) {
+  core::Random random(4);
+  EXPECT_EQ(read(g2o_text(ring(random, false)) + "FIX 2 4 5\n").graph.fixed_nodes,
+            (std::vector<int>{0, 2, 4, 5}));
+}
+
 TEST_F(G2oRead, LinesOfUnknownTypesAreCounted) {
   core::Random random(1);
   const std::string text = g2o_text(ring(random, false));
@@ -179,6 +203,13 @@ TEST_F(G2oRead, WhatIsBrokenIsNamedWithItsLine) {
       {"VERTEX_SE3:QUAT 3 0 0 0 0 0 0 2\n" + edge, "line 1: quaternion of norm 2, expected 1"},
       {vertices + edge + "FIX\n", "line 4: found no number"},
       {vertices + edge + std::string(kG2oOdometry) + " 1\n", "line 4: found 1 values, expected 2"},
+      {vertices + edge + std::string(kG2oOdometry) + " 1 9\n", "line 4: names vertex 9"},
+      {vertices + edge + "FIX 1 9\n", "line 4: names vertex 9"},
+      {"VERTEX_SE2 0 1e308 0 0\n" + vertices + edge, "line 1: found 1e308, expected a pose"},
+      {"VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"
+       "EDGE_SE3:QUAT 0 1 1 0 0 0.1 0.2 0.3 0.92736 1e12 0 0 0 0 0 1e-6 0 0 0 0 1e-6 0 0 0 1 0 0 "
+       "1 0 1\n",
+       "line 3: an information that is not positive definite"},
       {vertices + edge + "FIX 9\n", "line 4: names vertex 9"}};
   for (const auto& [text, expected] : broken) {
     EXPECT_THAT(complaint(text), HasSubstr(expected)) << text;

@@ -13,6 +13,7 @@ namespace samewhere::optimize {
 namespace {
 
 constexpr double kMaxNormError = 1e-2;  // of a quaternion that files round
+constexpr double kMaxNumber = 1e9;      // of a pose: beyond, squares leave what numbers can hold
 
 [[noreturn]] void refuse(const core::TextLine& line, const std::string& what) {
   throw core::InputError(fmt::format("{}: {}", line.place, what));
@@ -35,8 +36,10 @@ class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) {
     for (const core::TextLine& line : core::read_text_lines(path)) read(line);
+    sort_by_name();
+    for (const auto& line : odometry_) note_odometry(line);
     for (const auto& [line, kind] : edges_) add_edge(line, *kind);
-    for (const auto& line : fixed_) found_.graph.fixed_nodes.push_back(node_of(line, 1));
+    for (const auto& line : fixed_) fix(line);
     if (found_.names.empty() || found_.graph.edges.empty()) {
       throw core::InputError(
           fmt::format("{}: holds {} vertices and {} edges, expected some of both "
@@ -57,12 +60,9 @@ class Reader {
     if (type == "FIX") {
       fixed_.push_back(line);
     } else if (type == kG2oOdometry) {
-      if (line.words.size() != 3)
-        refuse(line,
-               fmt::format("found {} values, expected 2, the vertices", line.words.size() - 1));
-      ++num_odometry_[undirected(name_of(line, 1), name_of(line, 2))];
+      odometry_.push_back(line);
     } else {
-      ++found_.skipped[type];
+      ++found_.skipped[core::printable(type)];
     }
   }
 
@@ -74,6 +74,32 @@ class Reader {
       refuse(line, fmt::format("vertex {} a second time, expected once", name));
     found_.names.push_back(name);
     found_.graph.world_from_node.push_back(pose_of(line, 2, kind));
+  }
+
+  // Nodes stand in the order of the path, whatever that of the lines is: what is earlier and later
+  // matters to who is believed.
+  void sort_by_name() {
+    const std::vector<core::Rigid3> as_read = std::move(found_.graph.world_from_node);
+    found_.names.clear();
+    found_.graph.world_from_node.clear();
+    for (auto& [name, node] : node_of_) {
+      found_.graph.world_from_node.push_back(as_read[static_cast<std::size_t>(node)]);
+      node = static_cast<int>(found_.names.size());
+      found_.names.push_back(name);
+    }
+  }
+
+  void note_odometry(const core::TextLine& line) {
+    if (line.words.size() != 3)
+      refuse(line, fmt::format("found {} values, expected 2, the vertices", line.words.size() - 1));
+    for (const std::size_t column : {1, 2}) node_of(line, column);
+    ++num_odometry_[undirected(name_of(line, 1), name_of(line, 2))];
+  }
+
+  void fix(const core::TextLine& line) {
+    found_.graph.fixed_nodes.push_back(node_of(line, 1));
+    for (std::size_t column = 2; column < line.words.size(); ++column)
+      found_.graph.fixed_nodes.push_back(node_of(line, column));
   }
 
   void add_edge(const core::TextLine& line, const Kind& kind) {
@@ -120,7 +146,7 @@ class Reader {
     const auto [last, error] = std::from_chars(word.data(), end, name);
     if (error != std::errc{} || last != end || name < 0) {
       refuse(line, fmt::format("found '{}', expected the number of a vertex, 0 or more",
-                               word.substr(0, 40)));
+                               core::printable(word)));
     }
     return name;
   }
@@ -135,8 +161,13 @@ class Reader {
 
   static core::Rigid3 pose_of(const core::TextLine& line, std::size_t first, const Kind& kind) {
     std::vector<double> v;
-    for (std::size_t i = 0; i < kind.num_pose; ++i)
+    for (std::size_t i = 0; i < kind.num_pose; ++i) {
       v.push_back(core::finite_number(line, first + i));
+      if (std::abs(v.back()) > kMaxNumber) {
+        refuse(line, fmt::format("found {}, expected a pose of metres and radians, {:g} at most",
+                                 line.words[first + i], kMaxNumber));
+      }
+    }
     if (kind.is_planar) return {core::exp_so3({0.0, 0.0, v[2]}), {v[0], v[1], 0.0}};
     Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
     if (std::abs(rotation.norm() - 1.0) > kMaxNormError)
@@ -153,9 +184,16 @@ class Reader {
       for (int i = row; i < kind.num_degrees; ++i)
         given(row, i) = given(i, row) = core::finite_number(line, column++);
     }
-    if (Eigen::LLT<Eigen::MatrixXd>(given).info() != Eigen::Success)
+    // turned by the measurement, it may be indefinite by rounding
+    const auto is_definite = [](const auto& matrix) {
+      return Eigen::LLT<Eigen::MatrixXd>(matrix).info() == Eigen::Success;
+    };
+    core::Matrix6d information = core::Matrix6d::Zero();
+    if (is_definite(given))
+      information = kind.is_planar ? lifted(given, edge) : turned(given, edge);
+    if (!is_definite(information))
       refuse(line, "an information that is not positive definite, expected one that is");
-    return kind.is_planar ? lifted(given, edge) : turned(given, edge);
+    return information;
   }
 
   // For our error in place of g2o's, see g2o_information.
@@ -179,6 +217,7 @@ class Reader {
   std::map<long, int> node_of_;
   std::vector<std::pair<core::TextLine, const Kind*>> edges_;
   std::map<Ends, int> num_odometry_;  // still to come
+  std::vector<core::TextLine> odometry_;
   std::vector<core::TextLine> fixed_;
   const Kind* kind_ = nullptr;
 };

@@ -10,8 +10,10 @@ namespace {
 constexpr double kGrowth = 1.4;  // of the control parameter from round to round
 constexpr int kMaxRounds = 100;  // the parameter has grown by 4e14
 constexpr double kReaches[] = {3000.0, 300.0, 30.0};  // of the limit, see call_back
-constexpr double kReachOfDoubted = 10.0;              // of the limit, see all_fit
-constexpr int kMaxChecks = 10;                        // of sides changed after the rounds
+constexpr double kReachOfDoubted = 10.0;              // of the limit, see fit_with_doubted
+constexpr double kSpeaksFor = 0.5;  // bent so much less beside another, a loop says the same
+constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+constexpr int kMaxChecks = 10;  // of sides changed after the rounds
 // chi-square 99 %: 3 and 7 degrees of freedom for 6
 constexpr double kPlanarShare = 11.34 / 16.81;
 constexpr double kScaledShare = 18.48 / 16.81;
@@ -53,7 +55,8 @@ Graduation::Graduation(PoseGraph& graph, const Config& config)
 
 PoseGraphSummary Graduation::solve() {
   PoseGraphSummary summary;
-  if (!all_fit(summary)) ask_all(summary);
+  const State start = state();
+  if (!all_fit(summary) && !all_but_one_fit(start, summary)) ask_all(summary);
   summary.weights = problem_.weights();
   summary.final_cost = 0.0;
   for (std::size_t i = 0; i < graph_.edges.size(); ++i)
@@ -78,12 +81,42 @@ void Graduation::go_on(int max_iterations, PoseGraphSummary& summary) {
 }
 
 // Whether the graph holds together without the loops in doubt, and with those of them that fit it
-// then: as they had no say in where it is, they may be a little further off than others.
+// then.
 bool Graduation::all_fit(PoseGraphSummary& summary) {
   for (const std::size_t loop : loops_)
     if (graph_.edges[loop].is_doubted) problem_.weight(loop) = 0.0;
   summary = problem_.solve(config_.graph_iterations);
-  if (!believed_fit()) return false;
+  return believed_fit(kNobody) && fit_with_doubted(kNobody, summary);
+}
+
+// The same without the one loop that is bent most: a map in which all was well before a loop lied
+// need not be asked in full, unless one in doubt speaks for the liar. If not, all is as it was.
+bool Graduation::all_but_one_fit(const State& start, PoseGraphSummary& summary) {
+  const State before = state();
+  const std::vector<double> with_liar = chi2_of_loops();
+  const std::size_t liar =
+      *std::max_element(loops_.begin(), loops_.end(), [&](std::size_t one, std::size_t other) {
+        const auto bent = [&](std::size_t loop) {
+          return graph_.edges[loop].is_doubted ? 0.0 : with_liar[loop];
+        };
+        return bent(one) < bent(other);
+      });
+  go_back(start);
+  for (const std::size_t loop : loops_)
+    if (loop == liar || graph_.edges[loop].is_doubted) problem_.weight(loop) = 0.0;
+  go_on(config_.graph_iterations, summary);
+  const std::vector<double> without_liar = chi2_of_loops();
+  const bool is_spoken_for = std::any_of(loops_.begin(), loops_.end(), [&](std::size_t loop) {
+    return graph_.edges[loop].is_doubted && with_liar[loop] < kSpeaksFor * without_liar[loop];
+  });
+  const bool is_liar = !is_spoken_for && without_liar[liar] > limit_;
+  if (is_liar && believed_fit(liar) && fit_with_doubted(liar, summary)) return true;
+  go_back(before);
+  return false;
+}
+
+// As those in doubt had no say in where the graph is, they may be a little further off than others.
+bool Graduation::fit_with_doubted(std::size_t liar, PoseGraphSummary& summary) {
   bool are_there_more = false;
   for (const std::size_t loop : loops_) {
     const PoseEdge& edge = graph_.edges[loop];
@@ -94,15 +127,22 @@ bool Graduation::all_fit(PoseGraphSummary& summary) {
   if (!are_there_more) return true;
   go_on(config_.graph_iterations, summary);
   settle(summary);
-  return believed_fit();
+  return believed_fit(liar);
 }
 
-// All that are not in doubt.
-bool Graduation::believed_fit() const {
+// All that are not in doubt, but for the liar.
+bool Graduation::believed_fit(std::size_t liar) const {
   return std::all_of(loops_.begin(), loops_.end(), [&](std::size_t loop) {
     const PoseEdge& edge = graph_.edges[loop];
-    return edge.is_doubted || chi2_of(graph_, edge) <= limit_;
+    return loop == liar || edge.is_doubted || chi2_of(graph_, edge) <= limit_;
   });
+}
+
+// By edge; 0 for those that are no loops.
+std::vector<double> Graduation::chi2_of_loops() const {
+  std::vector<double> squares(graph_.edges.size(), 0.0);
+  for (const std::size_t loop : loops_) squares[loop] = chi2_of(graph_, graph_.edges[loop]);
+  return squares;
 }
 
 double Graduation::worst_chi2() const {

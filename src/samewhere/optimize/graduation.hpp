@@ -35,7 +35,10 @@ class Graduation {
   void ask_all(PoseGraphSummary& summary);
   void go_on(int max_iterations, PoseGraphSummary& summary);
   bool all_fit(PoseGraphSummary& summary);
-  bool believed_fit() const;
+  bool all_but_one_fit(const State& start, PoseGraphSummary& summary);
+  bool fit_with_doubted(std::size_t liar, PoseGraphSummary& summary);
+  bool believed_fit(std::size_t liar) const;
+  std::vector<double> chi2_of_loops() const;
   double worst_chi2() const;
   double truncated_cost() const;
   void graduate(double control, PoseGraphSummary& summary);

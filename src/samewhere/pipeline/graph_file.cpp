@@ -27,6 +27,12 @@ std::size_t num_parts(const optimize::PoseGraph& graph) {
   return std::set<int>(parts.begin(), parts.end()).size();
 }
 
+// Nothing says where they are.
+std::size_t num_alone(const optimize::PoseGraph& graph) {
+  const std::vector<bool> has_edge = nodes_with_edges(graph);
+  return static_cast<std::size_t>(std::count(has_edge.begin(), has_edge.end(), false));
+}
+
 std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
   const optimize::PoseGraph& graph = file.graph;
   const std::size_t loops = num_loops(graph);
@@ -35,7 +41,9 @@ std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
                             graph.is_planar ? "the plane" : "space")},
       {"edges", fmt::format("{}: {} from a pose to the next, {} loops", graph.edges.size(),
                             graph.edges.size() - loops, loops)}};
-  if (const std::size_t parts = num_parts(graph); parts > 1)
+  if (const std::size_t alone = num_alone(graph); alone > 0)
+    figures.push_back({"poses without an edge", fmt::format("{}, left out", alone)});
+  if (const std::size_t parts = num_parts(graph) - num_alone(graph); parts > 1)
     figures.push_back({"parts", fmt::format("{}, each solved by itself", parts)});
   for (const auto& [type, count] : file.skipped)
     figures.push_back({"lines left out", fmt::format("{} of unknown type {}", count, type)});
