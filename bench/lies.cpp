@@ -46,7 +46,7 @@ void solve(GraphWorld world, optimize::LoopLoss loss, Findings& findings) {
   }
 }
 
-// The loops that do not lie, alone: nobody can do better.
+// The loops that do not lie, alone.
 GraphWorld without_lies(const GraphWorld& world) {
   GraphWorld rest = world;
   rest.graph.edges.clear();
