@@ -10,7 +10,9 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/features/hamming.hpp>
+#include <samewhere/features/match_pair.hpp>
 #include <samewhere/geometry/two_view.hpp>
+#include <samewhere/verify/epipolar.hpp>
 #include <samewhere/verify/pair_registration.hpp>
 #include <samewhere/verify/pair_view.hpp>
 
@@ -204,6 +206,12 @@ std::vector<Vector2d> all_mapped(const Matrix3d& map, std::vector<Vector2d> pixe
   return pixels;
 }
 
+// Seeded by the pair: what was registered before does not matter.
+core::Random random_of_registration(const features::View& query, const features::View& match) {
+  const std::uint64_t query_seed = core::seed_of(0, "register", query.frame.value());
+  return core::Random(core::seed_of(query_seed, "match", match.frame.value()));
+}
+
 cv::Mat stacked(const std::array<cv::Mat, kNumPairPlanes>& planes) {
   cv::Mat stack;
   cv::vconcat(planes.data(), planes.size(), stack);
@@ -219,26 +227,11 @@ cv::Mat PairView::plane(PairPlane plane) const {
 
 std::vector<Match> agreeing_matches(const core::Candidate& candidate, const features::View& query,
                                     const features::View& match, const MeasureSettings& settings) {
-  const std::uint64_t pair_seed = core::seed_of(settings.seed, "verify", candidate.query.value());
-  core::Random random(core::seed_of(pair_seed, "match", candidate.match.value()));
+  core::Random random = random_of(candidate, settings);
   const std::vector<Match> matches =
       match_pair(match.features->descriptors, query.features->descriptors, settings.features);
-  geometry::PixelPairs pairs;
-  for (const Match& pair : matches) {
-    const auto& first = match.features->undistorted_px[static_cast<std::size_t>(pair.first)];
-    const auto& second = query.features->undistorted_px[static_cast<std::size_t>(pair.second)];
-    pairs.first_px.push_back(first.cast<double>());
-    pairs.second_px.push_back(second.cast<double>());
-  }
-  const auto found =
-      geometry::estimate_fundamental(pairs,
-                                     {.max_error_px = settings.verify.max_error_px,
-                                      .max_iterations = settings.verify.ransac_iterations},
-                                     random);
-  std::vector<Match> agreeing;
-  if (!found) return agreeing;
-  for (const int i : found->inliers) agreeing.push_back(matches[static_cast<std::size_t>(i)]);
-  return agreeing;
+  const auto found = epipolar_inliers(query, match, matches, settings.verify, random);
+  return found ? found->matches : std::vector<Match>();
 }
 
 std::optional<PairView> register_pair(const SeenView& query, const SeenView& match,
@@ -249,7 +242,7 @@ std::optional<PairView> register_pair(const SeenView& query, const SeenView& mat
   const cv::Size query_px = query.view.image_size_px;
   const cv::Size match_px = match.view.image_size_px;
   const auto pairs = pixels_of(matches, *query.view.features, *match.view.features);
-  core::Random random(core::seed_of(0, "register", matches.size()));
+  core::Random random = random_of_registration(query.view, match.view);
   const auto registration = register_pictures(pairs, query_px, random);
   if (!registration) return std::nullopt;
   const Matrix3d& match_from_query = registration->second_from_first;
