@@ -11,13 +11,16 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "labelled_pairs.hpp"
 #include "program.hpp"
 #include <samewhere/evaluate/separation.hpp>
+#include <samewhere/pairs/labelled_pairs.hpp>
 
 namespace samewhere::bench {
 namespace {
 
+using pairs::LabelledPair;
+using pairs::LabelledPairs;
+using pairs::PairRule;
 using verify::PairPlane;
 using verify::PairView;
 
@@ -72,7 +75,7 @@ std::vector<std::string> row_of(const std::string& source, const char* score,
 }
 
 void measure(const std::string& source, const Options& options, Table& table) {
-  const LabelledPairs labelled = labelled_pairs(source, options.rule);
+  const LabelledPairs labelled = pairs::labelled_pairs(source, options.rule);
   std::array<std::vector<double>, 3> of_true;
   std::array<std::vector<double>, 3> of_wrong;
   for (const LabelledPair& pair : labelled.pairs) {

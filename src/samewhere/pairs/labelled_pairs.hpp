@@ -5,7 +5,7 @@
 
 #include <samewhere/verify/pair_view.hpp>
 
-namespace samewhere::bench {
+namespace samewhere::pairs {
 
 // Two views that geometry takes for one place, and whether they are.
 struct LabelledPair {
@@ -34,4 +34,4 @@ struct PairRule {
 // source cannot be read or says nothing about places.
 LabelledPairs labelled_pairs(const std::string& source, const PairRule& rule);
 
-}  // namespace samewhere::bench
+}  // namespace samewhere::pairs

@@ -1,5 +1,3 @@
-#include "labelled_pairs.hpp"
-
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -9,19 +7,20 @@
 
 #include <fmt/format.h>
 
-#include "impostor_rule.hpp"
-#include "whole_view.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/grey.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/features/orb.hpp>
+#include <samewhere/pairs/labelled_pairs.hpp>
+#include <samewhere/pairs/most_alike.hpp>
+#include <samewhere/pairs/tower.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/walkthrough.hpp>
 
-namespace samewhere::bench {
+namespace samewhere::pairs {
 namespace {
 
 constexpr int kShortlist = 10;
@@ -184,4 +183,4 @@ LabelledPairs labelled_pairs(const std::string& source, const PairRule& rule) {
   return labelled;
 }
 
-}  // namespace samewhere::bench
+}  // namespace samewhere::pairs
