@@ -21,9 +21,9 @@ Batch batch_of(const ImageSet& images, const Config& config, std::uint64_t seed)
       .batch(all, seed);
 }
 
-std::unique_ptr<describe::Inference> exported(const Autoencoder& autoencoder) {
-  return describe::make_inference(
-      describe::parse_network("exported", onnx_bytes(autoencoder.encoder(), "")));
+std::unique_ptr<network::Inference> exported(const Autoencoder& autoencoder) {
+  return network::make_inference(
+      network::parse_network("exported", onnx_bytes(autoencoder.encoder(), "")));
 }
 
 TEST(NetworkPlan, ACodeThatNoLayerGivesIsRefused) {

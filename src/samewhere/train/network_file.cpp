@@ -8,7 +8,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
-#include <samewhere/describe/inference.hpp>
+#include <samewhere/network/inference.hpp>
 #include <samewhere/train/network_file.hpp>
 #include <samewhere/train/onnx_file.hpp>
 #include <samewhere/train/sha256.hpp>
@@ -161,7 +161,7 @@ void require_free(const std::filesystem::path& network) {
   }
 }
 
-double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
+double export_error(network::Inference& exported, std::span<const cv::Mat> inputs,
                     std::span<const float> trained_codes) {
   core::require(!inputs.empty() && trained_codes.size() % inputs.size() == 0,
                 "there is one code for each input");
@@ -180,7 +180,7 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer) 
   const Encoder encoder = trainer.best_encoder();
   require_usable(encoder, trainer.best_codes(), job.config);
   const std::string bytes = onnx_bytes(encoder, kPreparation);
-  const auto exported = describe::make_inference(describe::parse_network(job.out, bytes));
+  const auto exported = network::make_inference(network::parse_network(job.out, bytes));
   core::require(
       export_error(*exported, trainer.checked_inputs(), trainer.best_codes()) <= kMaxExportError,
       "the exported network gives the codes of the trained one");

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <samewhere/describe/inference.hpp>
+#include <samewhere/network/inference.hpp>
 #include <samewhere/train/trainer.hpp>
 
 namespace samewhere::train {
@@ -36,7 +36,7 @@ struct Quality {
 };
 
 // Writes the best encoder of a training as an ONNX file with its card (JSON) and removes the
-// checkpoint. Before, the very bytes that are written are run by describe::make_inference on
+// checkpoint. Before, the very bytes that are written are run by network::make_inference on
 // Trainer::checked_inputs(): an export_error() above 1e-5 throws ContractError. Throws InputError
 // if the network's weights are not finite or all its codes are zero, and if a file cannot be
 // written. After an error there is no network, and the checkpoint is still there.
@@ -45,7 +45,7 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer);
 // The largest difference between what the trained network made of some inputs (one code after the
 // other) and what the exported one makes of them, in shares of the largest number of the code; not
 // finite if a number of either is not.
-double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
+double export_error(network::Inference& exported, std::span<const cv::Mat> inputs,
                     std::span<const float> trained_codes);
 
 }  // namespace samewhere::train

@@ -168,7 +168,7 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   EXPECT_EQ(card["images"]["validation_sources"], "blocks of the sources");
   EXPECT_EQ(card["epochs"].size(), 4U);
   EXPECT_THAT(card["commits"], testing::ElementsAre("abc"));
-  const auto inference = describe::make_inference(describe::read_network(job.out));
+  const auto inference = network::make_inference(network::read_network(job.out));
   EXPECT_LE(export_error(*inference, trainer.checked_inputs(), trainer.best_codes()), 1e-5);
 }
 
