@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <samewhere/network/inference.hpp>
+#include <samewhere/train/card.hpp>
 #include <samewhere/train/trainer.hpp>
 
 namespace samewhere::train {
@@ -19,14 +20,6 @@ struct Job {
   std::string command;  // as it was typed, for the card
   std::string version;  // of the program
 };
-
-// Files beside the network: what the training goes on from, and what tells how it came about.
-std::filesystem::path checkpoint_of(const std::filesystem::path& network);
-std::filesystem::path card_of(const std::filesystem::path& network);
-
-// Throws InputError if the network or its card is there already, unless the checkpoint of a
-// training is, too, or if the system cannot say.
-void require_free(const std::filesystem::path& network);
 
 // What the finished network does on the validation views.
 struct Quality {
