@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -33,7 +33,7 @@ using verify::PairView;
 struct Options {
   std::vector<std::string> sources;
   PairRule rule;
-  std::string network = "pairs.onnx";
+  std::vector<std::string> networks = {"pairs.onnx"};
   std::string csv_file;
 };
 
@@ -54,8 +54,14 @@ double share_seen_again(const PairView& pair) {
   return seen + missed > 0.0 ? seen / (seen + missed) : 0.0;
 }
 
-constexpr std::array<const char*, 4> kScores = {"inliers", "correlation", "seen again", "network"};
-using Scores = std::array<double, kScores.size()>;
+// Of a pair: first these, then what each network makes of it.
+constexpr std::array<const char*, 3> kScores = {"inliers", "correlation", "seen again"};
+using Scores = std::vector<double>;
+
+struct Judge {
+  std::string name;
+  verify::PairNetwork network;
+};
 
 // Processor time of each pair, ms: other programs are not counted.
 struct Times {
@@ -73,19 +79,24 @@ auto timed(std::vector<double>& times_ms, const Work& work) {
 
 // A pair that cannot be registered scores below all others.
 Scores scores_of(const LabelledPair& pair, const LabelledPairs& labelled,
-                 verify::PairNetwork& network, Times& times) {
+                 std::vector<Judge>& judges, Times& times) {
   const auto num_inliers = static_cast<double>(pair.matches.size());
   const auto view = timed(times.registering_ms, [&] {
     return verify::register_pair(labelled.views[static_cast<std::size_t>(pair.query)],
                                  labelled.views[static_cast<std::size_t>(pair.match)], pair.matches,
                                  {});
   });
-  if (!view) return {num_inliers, -1.0, -1.0, -1.0};
-  const double same = timed(times.judging_ms, [&] { return network.probability_of_same(*view); });
-  return {num_inliers, correlation(*view), share_seen_again(*view), same};
+  Scores scores = {num_inliers, view ? correlation(*view) : -1.0,
+                   view ? share_seen_again(*view) : -1.0};
+  for (Judge& judge : judges) {
+    scores.push_back(
+        view ? timed(times.judging_ms, [&] { return judge.network.probability_of_same(*view); })
+             : -1.0);
+  }
+  return scores;
 }
 
-std::vector<std::string> row_of(const std::string& source, const char* score,
+std::vector<std::string> row_of(const std::string& source, const std::string& score,
                                 const evaluate::Separation& found, const std::string& time) {
   const bool is_known = found.num_true > 0 && found.num_wrong > 0;
   const auto share = [is_known](double ratio) {
@@ -102,29 +113,30 @@ std::vector<std::string> row_of(const std::string& source, const char* score,
 }
 
 // Beside finding and matching features, which all scores need.
-std::string time_of(std::string_view score, const Times& times) {
-  if (score == "inliers") return "-";
+std::string time_of(std::size_t score, const Times& times) {
+  if (score == 0) return "-";
   const double registering_ms = core::median(times.registering_ms).value_or(0.0);
-  if (score != "network") return fmt::format("{:.1f}", registering_ms);
+  if (score < kScores.size()) return fmt::format("{:.1f}", registering_ms);
   return fmt::format("{:.1f} + {:.1f}", registering_ms,
                      core::median(times.judging_ms).value_or(0.0));
 }
 
-void measure(const std::string& source, const Options& options, verify::PairNetwork& network,
+void measure(const std::string& source, const Options& options, std::vector<Judge>& judges,
              Table& table) {
   const LabelledPairs labelled = pairs::labelled_pairs(source, options.rule);
-  std::array<std::vector<double>, kScores.size()> of_true;
-  std::array<std::vector<double>, kScores.size()> of_wrong;
+  std::vector<std::string> names(kScores.begin(), kScores.end());
+  for (const Judge& judge : judges) names.push_back(judge.name);
+  std::vector<std::vector<double>> of_true(names.size());
+  std::vector<std::vector<double>> of_wrong(names.size());
   Times times;
   for (const LabelledPair& pair : labelled.pairs) {
-    const Scores scores = scores_of(pair, labelled, network, times);
+    const Scores scores = scores_of(pair, labelled, judges, times);
     for (std::size_t i = 0; i < scores.size(); ++i)
       (pair.is_same ? of_true : of_wrong)[i].push_back(scores[i]);
   }
-  for (std::size_t i = 0; i < kScores.size(); ++i) {
-    table.rows.push_back(row_of(source, kScores[i],
-                                evaluate::separation_of(of_true[i], of_wrong[i]),
-                                time_of(kScores[i], times)));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    table.rows.push_back(row_of(source, names[i], evaluate::separation_of(of_true[i], of_wrong[i]),
+                                time_of(i, times)));
   }
 }
 
@@ -133,8 +145,13 @@ void measure_all(const Options& options) {
                          "kept at 0.1 % wrong", "processor ms a pair, median"},
               .rows = {}};
   cv::setNumThreads(1);
-  verify::PairNetwork network("--network", options.network);
-  for (const std::string& source : options.sources) measure(source, options, network, table);
+  std::vector<Judge> judges;
+  for (const std::string& file : options.networks) {
+    const std::string name = std::filesystem::path(file).stem().string();
+    judges.push_back({options.networks.size() == 1 ? "network" : "network " + name,
+                      verify::PairNetwork("--network", file)});
+  }
+  for (const std::string& source : options.sources) measure(source, options, judges, table);
   publish(table, options.csv_file);
 }
 
@@ -159,7 +176,7 @@ std::function<void()> set_up(CLI::App& app) {
                  "pairs of which fewer matches agree on one geometry are left out")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--network", options->network, "ONNX file that judges a registered pair")
+  app.add_option("--network", options->networks, "ONNX files that judge a registered pair")
       ->capture_default_str();
   app.add_option("--csv", options->csv_file, "write the table to this file, too");
   return [options] { measure_all(*options); };

@@ -11,7 +11,7 @@ namespace samewhere::train {
 // float in [0, 1] (encoder_input), output `code`, 1 x length. `description` is for people.
 std::string onnx_bytes(const Encoder& encoder, const std::string& description);
 
-// The network that judges pairs: input `planes`, 1 x 1 x 768 x 128, as verify::PairView has them;
+// The network that judges pairs: input `planes`, 1 x 1 x 896 x 128, as verify::PairView has them;
 // output `same`, 1 x 1, how probable it is that both views show one place.
 std::string onnx_bytes(const PairNetwork& network, const std::string& description);
 

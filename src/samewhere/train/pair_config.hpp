@@ -34,7 +34,7 @@ inline void visit_fields(PairConfig& config, core::FieldVisitor& visit) {
   visit("channels", config.channels,
         {.help = "of the first layer; the last has four times as many", .min = 1, .max = 64});
   visit("hidden_pictures", config.hidden_pictures,
-        {.help = "share of pairs of which only the features are shown in training",
+        {.help = "share of pairs in training of which only features and likeness are shown",
          .min = 0.0,
          .max = 1.0});
   visit("step", config.step,

@@ -118,6 +118,22 @@ void append(const cv::Mat& planes, std::vector<float>& numbers) {
   numbers.insert(numbers.end(), planes.begin<float>(), planes.end<float>());
 }
 
+// Both kinds weigh half of `indices` each.
+void balance(std::span<const PairExample> pairs, const std::vector<int>& indices,
+             std::vector<float>& weights) {
+  double of_same = 0.0;
+  double of_wrong = 0.0;
+  for (const int i : indices) {
+    const auto index = static_cast<std::size_t>(i);
+    (pairs[index].is_same ? of_same : of_wrong) += weights[index];
+  }
+  const double half = 0.5 * static_cast<double>(indices.size());
+  for (const int i : indices) {
+    const auto index = static_cast<std::size_t>(i);
+    weights[index] *= static_cast<float>(half / (pairs[index].is_same ? of_same : of_wrong));
+  }
+}
+
 }  // namespace
 
 cv::Mat distorted_pair(const cv::Mat& stack, const PairConfig& config, core::Random& random) {
@@ -147,23 +163,27 @@ cv::Mat distorted_pair(const cv::Mat& stack, const PairConfig& config, core::Ran
   return distorted;
 }
 
-PairExampleMaker::PairExampleMaker(const PairConfig& config, std::span<const PairExample> pairs,
-                                   std::span<const int> indices)
-    : config_(config), pairs_(pairs) {
-  const auto num_same = std::count_if(indices.begin(), indices.end(), [&](int i) {
-    return pairs[static_cast<std::size_t>(i)].is_same;
-  });
-  const auto num_all = static_cast<std::ptrdiff_t>(indices.size());
-  if (num_same == 0 || num_same == num_all) return;
-  weight_of_same_ = 0.5F * static_cast<float>(num_all) / static_cast<float>(num_same);
-  weight_of_wrong_ = 0.5F * static_cast<float>(num_all) / static_cast<float>(num_all - num_same);
+std::vector<float> weights_of(const PairSet& set) {
+  constexpr double kSmoothing = 10.0;  // pairs: a source with few of a kind is not all that kind
+  std::vector<float> weights;
+  for (const PairSource& source : set.sources) {
+    const double half = 0.5 * (source.num_same + source.num_wrong) + kSmoothing;
+    for (int i = 0; i < source.num_same + source.num_wrong; ++i) {
+      const bool is_same = set.pairs[weights.size()].is_same;
+      const int num_of_kind = is_same ? source.num_same : source.num_wrong;
+      weights.push_back(static_cast<float>(half / (num_of_kind + kSmoothing)));
+    }
+  }
+  for (const bool is_held_back : {false, true})
+    balance(set.pairs, pairs_of(set, is_held_back), weights);
+  return weights;
 }
 
-void PairExampleMaker::add(const PairExample& pair, const cv::Mat& planes, PairBatch& batch) const {
+void PairExampleMaker::add(int index, const cv::Mat& planes, PairBatch& batch) const {
   ++batch.num_examples;
   append(planes, batch.planes);
-  batch.is_same.push_back(pair.is_same ? 1.0F : 0.0F);
-  batch.weights.push_back(pair.is_same ? weight_of_same_ : weight_of_wrong_);
+  batch.is_same.push_back(pairs_[static_cast<std::size_t>(index)].is_same ? 1.0F : 0.0F);
+  batch.weights.push_back(weights_[static_cast<std::size_t>(index)]);
 }
 
 PairBatch PairExampleMaker::distorted(std::span<const int> indices, std::uint64_t seed) const {
@@ -171,7 +191,7 @@ PairBatch PairExampleMaker::distorted(std::span<const int> indices, std::uint64_
   for (const int index : indices) {
     const PairExample& pair = pairs_[static_cast<std::size_t>(index)];
     core::Random random(core::seed_of(seed, "distort", static_cast<std::uint64_t>(index)));
-    add(pair, distorted_pair(unpacked(pair.planes), config_, random), batch);
+    add(index, distorted_pair(unpacked(pair.planes), config_, random), batch);
   }
   return batch;
 }
@@ -180,7 +200,7 @@ PairBatch PairExampleMaker::plain(std::span<const int> indices) const {
   PairBatch batch;
   for (const int index : indices) {
     const PairExample& pair = pairs_[static_cast<std::size_t>(index)];
-    add(pair, unpacked(pair.planes), batch);
+    add(index, unpacked(pair.planes), batch);
   }
   return batch;
 }

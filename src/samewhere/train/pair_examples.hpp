@@ -16,7 +16,7 @@ struct PairBatch {
   int num_examples = 0;
   std::vector<float> planes;   // of each, as verify::PairView has them
   std::vector<float> is_same;  // 1 or 0
-  std::vector<float> weights;  // both kinds weigh the same over all pairs, 1 in the mean
+  std::vector<float> weights;  // see PairExampleMaker
 };
 
 // The pair as another walk might have laid it: either view first, mirrored, seen from elsewhere,
@@ -24,12 +24,16 @@ struct PairBatch {
 // pictures hidden. `planes` are those of verify::PairView; so are the returned.
 cv::Mat distorted_pair(const cv::Mat& planes, const PairConfig& config, core::Random& random);
 
-// Makes batches of some pairs.
+// What each pair of a set counts: of the pairs to learn from, and of those to validate with, both
+// kinds weigh the same, 1 in the mean. So they do, nearly, within each source that has both, lest
+// the looks of a building tell the kind.
+std::vector<float> weights_of(const PairSet& set);
+
+// Makes batches of the pairs of a set, which must outlive it.
 class PairExampleMaker {
  public:
-  // Weighs the kinds by how many of each `indices` name. `pairs` must outlive it.
-  PairExampleMaker(const PairConfig& config, std::span<const PairExample> pairs,
-                   std::span<const int> indices);
+  PairExampleMaker(const PairConfig& config, const PairSet& set)
+      : config_(config), pairs_(set.pairs), weights_(weights_of(set)) {}
 
   // Distorted; pair i as `seed` and i say.
   PairBatch distorted(std::span<const int> indices, std::uint64_t seed) const;
@@ -37,12 +41,11 @@ class PairExampleMaker {
   PairBatch plain(std::span<const int> indices) const;
 
  private:
-  void add(const PairExample& pair, const cv::Mat& planes, PairBatch& batch) const;
+  void add(int index, const cv::Mat& planes, PairBatch& batch) const;
 
   PairConfig config_;
   std::span<const PairExample> pairs_;
-  float weight_of_same_ = 1.0F;
-  float weight_of_wrong_ = 1.0F;
+  std::vector<float> weights_;
 };
 
 }  // namespace samewhere::train

@@ -66,21 +66,37 @@ TEST(DistortedPair, EitherViewMayBeFirst) {
   EXPECT_TRUE(num_swapped > 8 && num_swapped < 32) << num_swapped;
 }
 
-TEST(PairExampleMaker, BothKindsWeighTheSameAndTheSeedDecides) {
-  PairSet set = test_pairs(6);
-  for (std::size_t i = 0; i < 8; ++i) set.pairs[i].is_same = i == 0;
-  std::vector<int> indices(8);
-  std::iota(indices.begin(), indices.end(), 0);
-  const PairExampleMaker maker(test_pair_config(), set.pairs, indices);
+TEST(PairExampleMaker, TheSeedDecides) {
+  const PairSet set = test_pairs(4);
+  const std::vector<int> indices = {0, 3, 5};
+  const PairExampleMaker maker(test_pair_config(), set);
   const PairBatch batch = maker.distorted(indices, 1);
-  ASSERT_EQ(batch.num_examples, 8);
-  EXPECT_FLOAT_EQ(batch.weights[0], 4.0F);
-  EXPECT_FLOAT_EQ(std::accumulate(batch.weights.begin(), batch.weights.end(), 0.0F), 8.0F);
+  EXPECT_EQ(batch.num_examples, 3);
+  EXPECT_THAT(batch.is_same, testing::ElementsAre(1.0F, 0.0F, 0.0F));
   EXPECT_EQ(maker.distorted(indices, 1).planes, batch.planes);
   EXPECT_NE(maker.distorted(indices, 2).planes, batch.planes);
   const cv::Mat plain = unpacked(set.pairs[0].planes);
   EXPECT_THAT(maker.plain(std::vector<int>{0}).planes,
               testing::ElementsAreArray(plain.begin<float>(), plain.end<float>()));
+}
+
+// Of two sources, one nearly all of one place, one of two: neither tells the kind.
+TEST(PairWeights, BothKindsWeighTheSameWithinEachSourceToo) {
+  PairSet set;
+  set.sources = {{"a", 90, 30, false}, {"b", 30, 150, false}, {"c", 1, 3, true}};
+  for (const PairSource& source : set.sources) {
+    for (int i = 0; i < source.num_same + source.num_wrong; ++i)
+      set.pairs.push_back({{}, i < source.num_same});
+  }
+  const std::vector<float> weights = weights_of(set);
+  const auto sum = [&](int begin, int end) {
+    return std::accumulate(weights.begin() + begin, weights.begin() + end, 0.0);
+  };
+  EXPECT_NEAR(sum(0, 90) + sum(120, 150), 150.0, 1e-3);
+  EXPECT_NEAR(sum(0, 300), 300.0, 1e-3);
+  EXPECT_NEAR(sum(300, 301), 2.0, 1e-3);
+  EXPECT_NEAR(sum(0, 90) / sum(90, 120), 1.0, 0.35);
+  EXPECT_NEAR(sum(120, 150) / sum(150, 300), 1.0, 0.35);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr double kMaxExportError = 1e-5;
 constexpr const char* kPreparation =
     "the planes of verify::PairView, one below the other: query, match, seen by both, features "
     "that "
-    "agree, only the query's, only the match's";
+    "agree, only the query's, only the match's, alike";
 
 OrderedJson sources_as_json(const PairSet& set, bool is_held_back) {
   OrderedJson sources = OrderedJson::array();

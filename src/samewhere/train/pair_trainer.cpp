@@ -48,8 +48,7 @@ PairTrainer::PairTrainer(const PairConfig& config, const PairSet& set,
       plan_(plan_pair_network(config)),
       training_(pairs_of(set, false)),
       validation_(pairs_of(set, true)),
-      training_examples_(config, set.pairs, training_),
-      validation_examples_(config, set.pairs, validation_),
+      examples_(config, set),
       run_(schedule_of(config),
            {.settings = settings_text(config),
             .network = layers_text(plan_),
@@ -69,7 +68,7 @@ std::optional<double> PairTrainer::learn(const std::function<void(int, int)>& on
   const std::uint64_t seed = run_.epoch_seed();
   // pairs are distorted beside the learning
   core::OrderedWorkers<PairBatch> loader(static_cast<int>(batches.size()), 1, [&](int i) {
-    return training_examples_.distorted(batches[static_cast<std::size_t>(i)], seed);
+    return examples_.distorted(batches[static_cast<std::size_t>(i)], seed);
   });
   double sum = 0.0;
   int num_done = 0;
@@ -86,7 +85,7 @@ std::optional<double> PairTrainer::learn(const std::function<void(int, int)>& on
 double PairTrainer::validation_error() {
   double sum = 0.0;
   for (const std::vector<int>& indices : cut(validation_, config_.batch)) {
-    const PairBatch batch = validation_examples_.plain(indices);
+    const PairBatch batch = examples_.plain(indices);
     sum += error_of(batch, classifier_.judge(batch.planes));
   }
   return sum / num_validation();

@@ -59,8 +59,7 @@ class PairTrainer {
   std::vector<ConvolutionPlan> plan_;
   std::vector<int> training_;
   std::vector<int> validation_;
-  PairExampleMaker training_examples_;
-  PairExampleMaker validation_examples_;
+  PairExampleMaker examples_;
   TrainingRun run_;
   PairClassifier classifier_;
 };

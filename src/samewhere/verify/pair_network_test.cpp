@@ -37,7 +37,9 @@ PairView pair_of(double level) {
 }
 
 TEST_F(PairNetworkFile, AnswersWithTheNumberThatTheNetworkMakesOfThePlanes) {
-  const std::string file = write({.input = {1, 1, 768, 128}, .code_length = 1, .bias = 0.25F});
+  const std::string file = write({.input = {1, 1, kNumPairPlanes * kPairSide_px, kPairSide_px},
+                                  .code_length = 1,
+                                  .bias = 0.25F});
   PairNetwork network("verify.pair_network", file);
   EXPECT_DOUBLE_EQ(network.probability_of_same(pair_of(0.0)), 0.25);
   EXPECT_NE(network.probability_of_same(pair_of(0.5)), 0.25);
@@ -47,13 +49,16 @@ TEST_F(PairNetworkFile, AnswersWithTheNumberThatTheNetworkMakesOfThePlanes) {
 TEST_F(PairNetworkFile, AnotherNetworkIsRefused) {
   EXPECT_THAT(complaint(write({.code_length = 1})),
               testing::AllOf(HasSubstr("1x1x24x32"), HasSubstr("expected the planes of a pair")));
-  EXPECT_THAT(complaint(write({.input = {1, 1, 768, 128}, .code_length = 2})),
+  EXPECT_THAT(complaint(write({.input = {1, 1, kNumPairPlanes * kPairSide_px, kPairSide_px},
+                               .code_length = 2})),
               testing::AllOf(HasSubstr("is 1x2"), HasSubstr("expected one number")));
   EXPECT_THAT(complaint("no/such.onnx"), HasSubstr("verify.pair_network = no/such.onnx"));
 }
 
 TEST_F(PairNetworkFile, AnAnswerThatIsNoNumberIsRefused) {
-  const std::string file = write({.input = {1, 1, 768, 128}, .code_length = 1, .bias = NAN});
+  const std::string file = write({.input = {1, 1, kNumPairPlanes * kPairSide_px, kPairSide_px},
+                                  .code_length = 1,
+                                  .bias = NAN});
   PairNetwork network("verify.pair_network", file);
   EXPECT_THROW(network.probability_of_same(pair_of(0.0)), core::InputError);
 }

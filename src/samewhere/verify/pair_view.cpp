@@ -25,10 +25,13 @@ using features::Features;
 using features::Match;
 
 constexpr double kMinOverlapRatio = 0.1;
-constexpr double kLightSigma_px = 6.0;   // of a plane: light changes more slowly than that
-constexpr double kContrastFloor = 6.0;   // grey levels: noise of a bare wall is not made large
-constexpr double kMaxContrast = 3.0;     // standard deviations, beyond: clipped
-constexpr double kDotSigma_px = 1.2;     // of a plane
+constexpr double kLightSigma_px = 6.0;  // of a plane: light changes more slowly than that
+constexpr double kContrastFloor = 6.0;  // grey levels: noise of a bare wall is not made large
+constexpr double kMaxContrast = 3.0;    // standard deviations, beyond: clipped
+constexpr double kDotSigma_px = 1.2;    // of a plane
+constexpr int kAlikeShift_px = 3;       // of a plane
+constexpr int kAlikeWindow_px = 9;
+constexpr double kAlikeFloor = 0.01;     // of the variance: below, noise is compared
 constexpr double kSameSpotRatio = 0.03;  // of the width: a plane's fit is no closer than that
 
 void require_grey(const SeenView& seen) {
@@ -154,6 +157,35 @@ cv::Mat without_light(const cv::Mat& plane, const cv::Mat& mask) {
   return normal.mul(mask);
 }
 
+cv::Mat mean_of_window(const cv::Mat& plane) {
+  cv::Mat mean;
+  cv::blur(plane, mean, {kAlikeWindow_px, kAlikeWindow_px}, {-1, -1}, cv::BORDER_CONSTANT);
+  return mean;
+}
+
+cv::Mat shifted(const cv::Mat& plane, int x_px, int y_px) {
+  const cv::Mat map = (cv::Mat_<double>(2, 3) << 1, 0, x_px, 0, 1, y_px);
+  cv::Mat moved;
+  cv::warpAffine(plane, moved, map, plane.size(), cv::INTER_NEAREST);
+  return moved;
+}
+
+// Correlation of two pictures without their light, window by window: the best of all small shifts,
+// since what is near lies elsewhere than the registration says.
+cv::Mat alike(const cv::Mat& query, const cv::Mat& match, const cv::Mat& mask) {
+  const cv::Mat of_query = mean_of_window(query.mul(query)) + kAlikeFloor;
+  const cv::Mat of_match = mean_of_window(match.mul(match)) + kAlikeFloor;
+  cv::Mat best = cv::Mat::zeros(query.size(), CV_32F);
+  for (int y_px = -kAlikeShift_px; y_px <= kAlikeShift_px; ++y_px) {
+    for (int x_px = -kAlikeShift_px; x_px <= kAlikeShift_px; ++x_px) {
+      cv::Mat norm;
+      cv::sqrt(of_query.mul(shifted(of_match, x_px, y_px)) + 1e-6, norm);
+      best = cv::max(best, mean_of_window(query.mul(shifted(match, x_px, y_px))) / norm);
+    }
+  }
+  return cv::min(best, 1.0).mul(mask);
+}
+
 // Soft dots of height 1 at these pixels of a plane.
 cv::Mat dots(const std::vector<Vector2d>& pixels, const cv::Mat& mask) {
   cv::Mat plane = cv::Mat::zeros(kPairSide_px, kPairSide_px, CV_32F);
@@ -256,12 +288,14 @@ std::optional<PairView> register_pair(const SeenView& query, const SeenView& mat
   const auto only_match = missed({match, query, query_from_match}, config.max_distance_bits);
   const auto only_query = missed({query, match, match_from_query}, config.max_distance_bits);
   const cv::Mat mask = seen_by_both(query_from, query_px, match_from, match_px);
+  const cv::Mat query_plane = without_light(brought(query.grey, query_from), mask);
+  const cv::Mat match_plane = without_light(brought(match.grey, match_from), mask);
   return PairView{
-      .planes = stacked({without_light(brought(query.grey, query_from), mask),
-                         without_light(brought(match.grey, match_from), mask), mask,
+      .planes = stacked({query_plane, match_plane, mask,
                          dots(all_mapped(plane_from_query, pairs.first_px), mask),
                          dots(all_mapped(plane_from_query, only_query), mask),
-                         dots(all_mapped(plane_from_query * query_from_match, only_match), mask)}),
+                         dots(all_mapped(plane_from_query * query_from_match, only_match), mask),
+                         alike(query_plane, match_plane, mask)}),
       .overlap_ratio = overlap.ratio,
       .scale = query_from(0, 0),
       .is_homography = registration->is_homography};
