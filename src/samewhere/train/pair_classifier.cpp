@@ -32,6 +32,14 @@ class Layers : public torch::nn::Module {
     return last_(x.mean({2, 3})).flatten();
   }
 
+  // Weights of planes that are 0 in every pair stay what they are: 0 from here on.
+  void shut_eyes() {
+    const torch::NoGradGuard no_gradient;
+    for (const auto plane :
+         {verify::PairPlane::kQuery, verify::PairPlane::kMatch, verify::PairPlane::kAlike})
+      convolutions_.front()->weight().select(1, static_cast<std::int64_t>(plane)).zero_();
+  }
+
   PairNetwork folded() const {
     PairNetwork network;
     for (const auto& convolution : convolutions_)
@@ -65,9 +73,11 @@ struct PairClassifier::Network {
   torch::optim::Adam adam;
 };
 
-PairClassifier::PairClassifier(const std::vector<ConvolutionPlan>& plan, std::uint64_t seed) {
+PairClassifier::PairClassifier(const std::vector<ConvolutionPlan>& plan, std::uint64_t seed,
+                               bool sees_pictures) {
   torch::manual_seed(seed);
   network_ = std::make_unique<Network>(plan);
+  if (!sees_pictures) network_->layers.shut_eyes();
 }
 
 PairClassifier::~PairClassifier() = default;

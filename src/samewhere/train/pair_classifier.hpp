@@ -17,8 +17,9 @@ namespace samewhere::train {
 // bits.
 class PairClassifier {
  public:
-  // Weights are drawn by `seed`.
-  PairClassifier(const std::vector<ConvolutionPlan>& plan, std::uint64_t seed);
+  // Weights are drawn by `seed`. One that sees no pictures never will: what it makes of a pair does
+  // not depend on them, nor on where they are alike, as long as it learns from pairs without.
+  PairClassifier(const std::vector<ConvolutionPlan>& plan, std::uint64_t seed, bool sees_pictures);
   PairClassifier(const PairClassifier&) = delete;
   PairClassifier& operator=(const PairClassifier&) = delete;
   ~PairClassifier();

@@ -13,7 +13,7 @@ struct PairConfig {
   int seed = 0;
   int threads = 1;
   int channels = 16;
-  double hidden_pictures = 0.25;
+  double hidden_pictures = 1.0;
   int step = 10;
   int window_frames = 150;
   int min_matches = 20;
@@ -34,7 +34,9 @@ inline void visit_fields(PairConfig& config, core::FieldVisitor& visit) {
   visit("channels", config.channels,
         {.help = "of the first layer; the last has four times as many", .min = 1, .max = 64});
   visit("hidden_pictures", config.hidden_pictures,
-        {.help = "share of pairs in training of which only features and likeness are shown",
+        {.help = "share of pairs in training of which only the features are shown; 1: the network "
+                 "is blind "
+                 "to pictures",
          .min = 0.0,
          .max = 1.0});
   visit("step", config.step,

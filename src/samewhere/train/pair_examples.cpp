@@ -21,12 +21,13 @@ constexpr double kMirrored = 0.5;
 constexpr double kMaxViewShift_px = 10.0;
 constexpr double kMaxViewTurn_rad = 8.0 * std::numbers::pi / 180.0;
 constexpr double kMaxViewLogScale = 0.2;
-constexpr double kMisregisteredSigma_px = 1.2;
-constexpr double kMisregisteredTurnSigma_rad = 1.0 * std::numbers::pi / 180.0;
-constexpr double kMisregisteredLogScaleSigma = 0.015;
+constexpr double kMisregisteredSigma_px = 3.0;
+constexpr double kMisregisteredTurnSigma_rad = 2.5 * std::numbers::pi / 180.0;
+constexpr double kMisregisteredLogScaleSigma = 0.05;
 constexpr double kMaxLogContrast = 0.4;
 constexpr double kMaxBlur_px = 1.2;
 constexpr double kMaxNoiseSigma = 0.15;
+constexpr double kLeastLikeness = 0.4;  // of what it was
 constexpr double kMaxMissedMatches = 0.4;
 constexpr double kMaxMissedDifferences = 0.3;
 constexpr int kMissedCell_px = 5;  // about the size of a dot
@@ -154,6 +155,8 @@ cv::Mat distorted_pair(const cv::Mat& stack, const PairConfig& config, core::Ran
     }
     plane = plane.mul(at(planes, PairPlane::kSeenByBoth));
   }
+  // another view of one place differs as another place does: how much is not to decide
+  at(planes, PairPlane::kAlike) *= is_hidden ? 0.0 : random.uniform(kLeastLikeness, 1.0);
   miss(random.uniform(0.0, kMaxMissedMatches), random, at(planes, PairPlane::kAgree));
   const double missed_ratio = random.uniform(0.0, kMaxMissedDifferences);
   miss(missed_ratio, random, at(planes, PairPlane::kOnlyQueryShows));

@@ -21,7 +21,8 @@ struct PairBatch {
 
 // The pair as another walk might have laid it: either view first, mirrored, seen from elsewhere,
 // registered a little beside it, in other light, with matches and differences missed, or with its
-// pictures hidden. `planes` are those of verify::PairView; so are the returned.
+// pictures, and where they are alike, hidden. `planes` are those of verify::PairView; so are the
+// returned.
 cv::Mat distorted_pair(const cv::Mat& planes, const PairConfig& config, core::Random& random);
 
 // What each pair of a set counts: of the pairs to learn from, and of those to validate with, both

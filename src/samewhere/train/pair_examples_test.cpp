@@ -46,6 +46,7 @@ TEST(DistortedPair, IsStillAPair) {
 TEST(DistortedPair, PicturesCanBeHiddenAndFeaturesStay) {
   const cv::Mat pair = distorted(test_planes(2, false), 3, 1.0);
   EXPECT_EQ(cv::norm(pair.rowRange(0, 2 * kPairSide_px), cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(plane(pair, PairPlane::kAlike), cv::NORM_INF), 0.0);
   EXPECT_GT(cv::sum(plane(pair, PairPlane::kOnlyQueryShows))[0], 50.0);
 }
 

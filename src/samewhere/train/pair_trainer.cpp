@@ -55,7 +55,7 @@ PairTrainer::PairTrainer(const PairConfig& config, const PairSet& set,
             .images_sha256 = set.sha256,
             .commits = {commit}},
            std::move(checkpoint), "sources"),
-      classifier_(plan_, static_cast<std::uint64_t>(config.seed)) {
+      classifier_(plan_, static_cast<std::uint64_t>(config.seed), config.hidden_pictures < 1.0) {
   if (!history().empty()) classifier_.restore(run_.state().learner);
 }
 

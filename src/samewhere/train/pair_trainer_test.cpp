@@ -102,6 +102,22 @@ TEST_F(PairTraining, LeavesANetworkThatIsUsedAsItWasTrainedAndItsCard) {
   }
 }
 
+TEST_F(PairTraining, WithoutPicturesItIsBlindToThem) {
+  PairConfig config = test_pair_config();
+  config.hidden_pictures = 1.0;
+  PairTrainer trainer(config, set_, path("checkpoint"), "abc");
+  run_epochs(trainer, 2);
+  cv::Mat planes = trainer.checked_planes().front();
+  const auto judge = [&] {
+    return trainer.classifier().judge({planes.ptr<float>(), planes.total()}).front();
+  };
+  const float before = judge();
+  planes.rowRange(0, 2 * verify::kPairSide_px).setTo(0.3F);
+  EXPECT_EQ(judge(), before);
+  planes.rowRange(2 * verify::kPairSide_px, 4 * verify::kPairSide_px).setTo(0.3F);
+  EXPECT_NE(judge(), before);
+}
+
 TEST_F(PairTraining, ARuinedNetworkIsNotWritten) {
   PairConfig config = test_pair_config();
   const PairJob job{.out = path("ruined.onnx"), .config = config};

@@ -19,6 +19,7 @@ inline cv::Mat test_planes(int number, bool is_same) {
     return planes.rowRange(first, first + kPairSide_px);
   };
   plane(verify::PairPlane::kSeenByBoth).setTo(1.0F);
+  plane(verify::PairPlane::kAlike).setTo(is_same ? 0.8F : 0.5F);
   const auto spot = [&] {
     return cv::Point(8 + static_cast<int>(random.index(112)),
                      8 + static_cast<int>(random.index(112)));

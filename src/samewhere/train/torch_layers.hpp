@@ -26,6 +26,7 @@ class NormedConvolution : public torch::nn::Module {
 
   torch::Tensor forward(const torch::Tensor& x) { return norm_(convolution_(x)); }
   torch::nn::BatchNorm2d& norm() { return norm_; }
+  torch::Tensor& weight() { return convolution_->weight; }
   // Both as one convolution.
   Convolution folded() const;
 
