@@ -13,7 +13,7 @@ struct PairConfig {
   int seed = 0;
   int threads = 1;
   int channels = 16;
-  double hidden_pictures = 1.0;
+  double hidden_pictures = 0.25;
   int step = 10;
   int window_frames = 150;
   int min_matches = 20;
