@@ -46,6 +46,24 @@ TEST_F(PairNetworkFile, AnswersWithTheNumberThatTheNetworkMakesOfThePlanes) {
   EXPECT_NE(network.checksum(), 0U);
 }
 
+// And look at what they are shown.
+TEST_F(PairNetworkFile, TheShippedNetworksGiveProbabilities) {
+  for (const char* file : {"pairs.onnx", "pairs-features.onnx"}) {
+    PairNetwork network("verify.pair_network", file);
+    const auto probability = [&](PairPlane shown) {
+      PairView pair = pair_of(0.0);
+      pair.plane(PairPlane::kSeenByBoth).setTo(1.0F);
+      for (int i = 8; i < kPairSide_px; i += 12)
+        for (int k = 8; k < kPairSide_px; k += 12) pair.plane(shown).at<float>(i, k) = 1.0F;
+      return network.probability_of_same(pair);
+    };
+    const double agreeing = probability(PairPlane::kAgree);
+    const double lacking = probability(PairPlane::kOnlyQueryShows);
+    EXPECT_TRUE(lacking > 0.0 && lacking < 1.0 && agreeing > 0.0 && agreeing < 1.0) << file;
+    EXPECT_GT(std::abs(agreeing - lacking), 1e-4) << file;
+  }
+}
+
 TEST_F(PairNetworkFile, AnotherNetworkIsRefused) {
   EXPECT_THAT(complaint(write({.code_length = 1})),
               testing::AllOf(HasSubstr("1x1x24x32"), HasSubstr("expected the planes of a pair")));
