@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <set>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/core/text_file.hpp>
+#include <samewhere/pairs/tower.hpp>
 
 namespace samewhere::bench {
 namespace {
+
+using pairs::TowerImage;
 
 constexpr double kOwnMoment_s = 10.0;
 constexpr std::uint64_t kPermutationSeed = 0;
@@ -66,23 +65,6 @@ ImpostorRule rule_of_list(const Pairs& pairs, int query_step) {
   return rule;
 }
 
-// Image name -> whether the data set calls it gallery.
-std::map<std::string, bool> read_splits(const std::filesystem::path& csv) {
-  std::map<std::string, bool> is_gallery;
-  for (const core::TextLine& line : core::read_text_lines(csv)) {
-    const std::string& text = line.words.front();
-    const std::size_t first = text.find(',');
-    const std::size_t second = text.find(',', first + 1);
-    const std::size_t third = text.find(',', second + 1);
-    if (first == std::string::npos || second == std::string::npos || third == std::string::npos) {
-      throw core::InputError(
-          fmt::format("{}: '{}', expected image,floor,split,area", line.place, text));
-    }
-    is_gallery[text.substr(0, first)] = text.substr(second + 1, third - second - 1) == "gallery";
-  }
-  return is_gallery;
-}
-
 }  // namespace
 
 std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_step) {
@@ -96,27 +78,8 @@ std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_st
   return rules;
 }
 
-bool is_tower(const std::filesystem::path& source) {
-  return std::filesystem::exists(source / "dataset.csv") &&
-         std::filesystem::exists(source / "walk.txt");
-}
-
-std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
-  const std::map<std::string, bool> is_gallery = read_splits(folder / "dataset.csv");
-  std::vector<TowerImage> images;
-  for (const core::TextLine& line : core::read_text_lines(folder / "walk.txt")) {
-    const auto split = line.words.size() == 3 ? is_gallery.find(line.words[0]) : is_gallery.end();
-    if (split == is_gallery.end()) {
-      throw core::InputError(
-          fmt::format("{}: expected an image of dataset.csv, its floor and its clip", line.place));
-    }
-    images.push_back({line.words[1], line.words[2], split->second});
-  }
-  return images;
-}
-
 ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {
-  const auto images = std::make_shared<const std::vector<TowerImage>>(read_tower(folder));
+  const auto images = std::make_shared<const std::vector<TowerImage>>(pairs::read_tower(folder));
   std::vector<int> all_queries;
   for (std::size_t i = 0; i < images->size(); ++i) {
     if (!(*images)[i].is_gallery) all_queries.push_back(static_cast<int>(i));

@@ -38,18 +38,6 @@ struct KnownFrames {
 // Throws InputError if the truth says nothing about places.
 std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_step);
 
-// Whether this is the folder of IE Tower: a dataset.csv beside a walk.txt.
-bool is_tower(const std::filesystem::path& source);
-
-struct TowerImage {
-  std::string floor;
-  std::string clip;
-  bool is_gallery = false;
-};
-
-// The images of IE Tower in the order of its walk.txt. Throws InputError.
-std::vector<TowerImage> read_tower(const std::filesystem::path& folder);
-
 // Protocol floor-v2, clip-out: `num_queries` of the images that dataset.csv calls queries, drawn by
 // a fixed permutation; gallery images are offered unless of the query's own clip; those of another
 // floor are impostors. Frames are those of walk.txt, in its order. Throws InputError.

@@ -6,10 +6,10 @@
 #include "orb_matches.hpp"
 #include "picture_statistics.hpp"
 #include "view_pairs.hpp"
-#include "whole_view.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/random.hpp>
+#include <samewhere/pairs/tower.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -125,12 +125,6 @@ TEST(ViewPairs, PairsFallIntoTheirClassAndAreDrawnAlike) {
   EXPECT_TRUE(draw_pairs(views, Way::kForward, 5)[10].empty());
 }
 
-TEST(WholeView, TheMostAlikeComeFirst) {
-  const std::vector<std::vector<float>> vectors = {{1, 0}, {0, 1}, {0.8F, 0.6F}, {1, 0}};
-  EXPECT_THAT(most_alike(vectors, 0, {1, 2, 3}, 2), testing::ElementsAre(3, 2));
-  EXPECT_THAT(most_alike(vectors, 0, {1}, 50), testing::ElementsAre(1));
-}
-
 TEST(ImpostorRule, TheOwnPlaceAndMomentAreTakenOut) {
   KnownFrames frames;
   frames.truth.places = core::PlaceTruthMatrix{
@@ -166,7 +160,7 @@ TEST(ImpostorRule, OfTheTowerOtherFloorsAreImpostors) {
                    "image,floor,split,area\na1,f1,gallery,x y\na2,f1,query,x\nb1,f1,gallery,x\n"
                    "c1,f2,gallery,x\n");
   core::write_file(folder / "walk.txt", "a1 f1 a\na2 f1 a\nb1 f1 b\nc1 f2 c\n");
-  ASSERT_TRUE(is_tower(folder));
+  ASSERT_TRUE(pairs::is_tower(folder));
   const ImpostorRule rule = tower_rule(folder, 150);
   EXPECT_THAT(rule.queries, testing::ElementsAre(1));
   EXPECT_EQ(rule.offer(1, 0), Offer::kTakenOut);

@@ -4,26 +4,36 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "labelled_pairs.hpp"
 #include "program.hpp"
+#include <samewhere/core/median.hpp>
+#include <samewhere/core/timing.hpp>
 #include <samewhere/evaluate/separation.hpp>
+#include <samewhere/pairs/labelled_pairs.hpp>
+#include <samewhere/verify/pair_network.hpp>
 
 namespace samewhere::bench {
 namespace {
 
+using pairs::LabelledPair;
+using pairs::LabelledPairs;
+using pairs::PairRule;
 using verify::PairPlane;
 using verify::PairView;
 
 struct Options {
   std::vector<std::string> sources;
   PairRule rule;
+  std::vector<std::string> networks = {"pairs.onnx"};
   std::string csv_file;
 };
 
@@ -44,20 +54,50 @@ double share_seen_again(const PairView& pair) {
   return seen + missed > 0.0 ? seen / (seen + missed) : 0.0;
 }
 
+// Of a pair: first these, then what each network makes of it.
 constexpr std::array<const char*, 3> kScores = {"inliers", "correlation", "seen again"};
+using Scores = std::vector<double>;
 
-// A pair that cannot be registered scores below all others.
-std::array<double, 3> scores_of(const LabelledPair& pair, const LabelledPairs& labelled) {
-  const auto num_inliers = static_cast<double>(pair.matches.size());
-  const auto view =
-      verify::register_pair(labelled.views[static_cast<std::size_t>(pair.query)],
-                            labelled.views[static_cast<std::size_t>(pair.match)], pair.matches, {});
-  if (!view) return {num_inliers, -1.0, -1.0};
-  return {num_inliers, correlation(*view), share_seen_again(*view)};
+struct Judge {
+  std::string name;
+  verify::PairNetwork network;
+};
+
+// Processor time of each pair, ms: other programs are not counted.
+struct Times {
+  std::vector<double> registering_ms;
+  std::vector<double> judging_ms;
+};
+
+template <class Work>
+auto timed(std::vector<double>& times_ms, const Work& work) {
+  const double start_ms = core::thread_processor_ms();
+  auto result = work();
+  times_ms.push_back(core::thread_processor_ms() - start_ms);
+  return result;
 }
 
-std::vector<std::string> row_of(const std::string& source, const char* score,
-                                const evaluate::Separation& found) {
+// A pair that cannot be registered scores below all others.
+Scores scores_of(const LabelledPair& pair, const LabelledPairs& labelled,
+                 std::vector<Judge>& judges, Times& times) {
+  const auto num_inliers = static_cast<double>(pair.matches.size());
+  const auto view = timed(times.registering_ms, [&] {
+    return verify::register_pair(labelled.views[static_cast<std::size_t>(pair.query)],
+                                 labelled.views[static_cast<std::size_t>(pair.match)], pair.matches,
+                                 {});
+  });
+  Scores scores = {num_inliers, view ? correlation(*view) : -1.0,
+                   view ? share_seen_again(*view) : -1.0};
+  for (Judge& judge : judges) {
+    scores.push_back(
+        view ? timed(times.judging_ms, [&] { return judge.network.probability_of_same(*view); })
+             : -1.0);
+  }
+  return scores;
+}
+
+std::vector<std::string> row_of(const std::string& source, const std::string& score,
+                                const evaluate::Separation& found, const std::string& time) {
   const bool is_known = found.num_true > 0 && found.num_wrong > 0;
   const auto share = [is_known](double ratio) {
     return is_known ? fmt::format("{:.1f} %", 100.0 * ratio) : "-";
@@ -68,28 +108,50 @@ std::vector<std::string> row_of(const std::string& source, const char* score,
           std::to_string(found.num_wrong),
           is_known ? fmt::format("{:.3f}", found.auc) : "-",
           share(found.kept_at_1_percent),
-          share(found.kept_at_0_1_percent)};
+          share(found.kept_at_0_1_percent),
+          time};
 }
 
-void measure(const std::string& source, const Options& options, Table& table) {
-  const LabelledPairs labelled = labelled_pairs(source, options.rule);
-  std::array<std::vector<double>, 3> of_true;
-  std::array<std::vector<double>, 3> of_wrong;
+// Beside finding and matching features, which all scores need.
+std::string time_of(std::size_t score, const Times& times) {
+  if (score == 0) return "-";
+  const double registering_ms = core::median(times.registering_ms).value_or(0.0);
+  if (score < kScores.size()) return fmt::format("{:.1f}", registering_ms);
+  return fmt::format("{:.1f} + {:.1f}", registering_ms,
+                     core::median(times.judging_ms).value_or(0.0));
+}
+
+void measure(const std::string& source, const Options& options, std::vector<Judge>& judges,
+             Table& table) {
+  const LabelledPairs labelled = pairs::labelled_pairs(source, options.rule);
+  std::vector<std::string> names(kScores.begin(), kScores.end());
+  for (const Judge& judge : judges) names.push_back(judge.name);
+  std::vector<std::vector<double>> of_true(names.size());
+  std::vector<std::vector<double>> of_wrong(names.size());
+  Times times;
   for (const LabelledPair& pair : labelled.pairs) {
-    const std::array<double, 3> scores = scores_of(pair, labelled);
+    const Scores scores = scores_of(pair, labelled, judges, times);
     for (std::size_t i = 0; i < scores.size(); ++i)
       (pair.is_same ? of_true : of_wrong)[i].push_back(scores[i]);
   }
-  for (std::size_t i = 0; i < kScores.size(); ++i)
-    table.rows.push_back(
-        row_of(source, kScores[i], evaluate::separation_of(of_true[i], of_wrong[i])));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    table.rows.push_back(row_of(source, names[i], evaluate::separation_of(of_true[i], of_wrong[i]),
+                                time_of(i, times)));
+  }
 }
 
 void measure_all(const Options& options) {
   Table table{.header = {"source", "score", "true", "wrong", "AUC", "kept at 1 % wrong",
-                         "kept at 0.1 % wrong"},
+                         "kept at 0.1 % wrong", "processor ms a pair, median"},
               .rows = {}};
-  for (const std::string& source : options.sources) measure(source, options, table);
+  cv::setNumThreads(1);
+  std::vector<Judge> judges;
+  for (const std::string& file : options.networks) {
+    const std::string name = std::filesystem::path(file).stem().string();
+    judges.push_back({options.networks.size() == 1 ? "network" : "network " + name,
+                      verify::PairNetwork("--network", file)});
+  }
+  for (const std::string& source : options.sources) measure(source, options, judges, table);
   publish(table, options.csv_file);
 }
 
@@ -113,6 +175,8 @@ std::function<void()> set_up(CLI::App& app) {
   app.add_option("--min-matches", options->rule.min_matches,
                  "pairs of which fewer matches agree on one geometry are left out")
       ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--network", options->networks, "ONNX files that judge a registered pair")
       ->capture_default_str();
   app.add_option("--csv", options->csv_file, "write the table to this file, too");
   return [options] { measure_all(*options); };

@@ -1,13 +1,11 @@
 #include "whole_view.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/pairs/most_alike.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -38,33 +36,11 @@ std::vector<float> MobileNet::describe(const cv::Mat& bgr) {
                                            cv::Scalar::all(kMiddle), swap_to_rgb));
   const cv::Mat embedding = network_.forward("embedding").reshape(1, 1);
   std::vector<float> vector(embedding.begin<float>(), embedding.end<float>());
-  const float length = std::sqrt(dot(vector, vector));
+  const float length = std::sqrt(pairs::dot(vector, vector));
   if (length > 0.0F) {
     for (float& value : vector) value /= length;
   }
   return vector;
-}
-
-float dot(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0F);
-}
-
-std::vector<int> most_alike(const std::vector<std::vector<float>>& vectors, int query,
-                            const std::vector<int>& offered, int count) {
-  std::vector<std::pair<float, int>> ranked;
-  ranked.reserve(offered.size());
-  for (const int match : offered) {
-    // negated, so that the usual order puts the most alike first and breaks ties by index
-    ranked.emplace_back(
-        -dot(vectors[static_cast<std::size_t>(query)], vectors[static_cast<std::size_t>(match)]),
-        match);
-  }
-  const std::size_t num_kept = std::min(ranked.size(), static_cast<std::size_t>(count));
-  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(num_kept),
-                    ranked.end());
-  std::vector<int> best(num_kept);
-  for (std::size_t i = 0; i < num_kept; ++i) best[i] = ranked[i].second;
-  return best;
 }
 
 }  // namespace samewhere::bench

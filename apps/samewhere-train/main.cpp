@@ -1,26 +1,23 @@
-// samewhere-train: trains the network that describes a view. `samewhere train` starts it.
+// samewhere-train: trains the network that describes a view; `samewhere-train pairs` the one that
+// judges pairs of views. `samewhere train` starts it.
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 
-#include <samewhere/core/errors.hpp>
-#include <samewhere/core/file.hpp>
+#include "options.hpp"
+#include "pairs_command.hpp"
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/progress.hpp>
-#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/train/commit.hpp>
 #include <samewhere/train/network_file.hpp>
 
@@ -34,76 +31,13 @@ constexpr const char* kExamples =
     "  samewhere train --images gallery.txt --out small.onnx --code-size 264 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
-    "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
-
-// The option of a setting: of learning_rate --learning-rate.
-std::string option_of(std::string setting) {
-  std::replace(setting.begin(), setting.end(), '_', '-');
-  return "--" + setting;
-}
-
-// One option for each setting, named by it. What was given is kept as text, so that the settings'
-// own reader checks it.
-class OptionMaker : public core::FieldVisitor {
- public:
-  OptionMaker(CLI::App& app, std::map<std::string, std::string>& given)
-      : app_(app), given_(given) {}
-
- protected:
-  void value(std::string_view name, bool& field, const core::FieldInfo& info) override {
-    add(name, field ? "true" : "false", info);
-  }
-  void value(std::string_view name, int& field, const core::FieldInfo& info) override {
-    add(name, std::to_string(field), info);
-  }
-  void value(std::string_view name, double& field, const core::FieldInfo& info) override {
-    add(name, fmt::format("{}", field), info);
-  }
-  void value(std::string_view name, std::string& field, const core::FieldInfo& info) override {
-    add(name, field, info);
-  }
-  void choice(std::string_view name, int& field, const core::FieldInfo& info) override {
-    add(name, std::string(info.choices[static_cast<std::size_t>(field)]), info);
-  }
-  bool enter(std::string_view /*name*/, const core::FieldInfo& /*info*/) override { return true; }
-  void leave() override {}
-
- private:
-  void add(std::string_view name, const std::string& usual, const core::FieldInfo& info) {
-    const std::string choices =
-        info.choices.empty() ? "" : fmt::format(" ({})", fmt::join(info.choices, ", "));
-    const auto keep = [&given = given_, key = std::string(name)](const std::string& text) {
-      given[key] = text;
-    };
-    app_.add_option_function<std::string>(option_of(std::string(name)), keep,
-                                          std::string(info.help) + choices)
-        ->default_str(usual);
-  }
-
-  CLI::App& app_;
-  std::map<std::string, std::string>& given_;
-};
-
-std::string as_typed(int argc, char** argv) {
-  std::string command = "samewhere train";
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool is_plain = word.find_first_of(" ?&*'\"$()") == std::string::npos && !word.empty();
-    command += is_plain ? fmt::format(" {}", word) : fmt::format(" '{}'", word);
-  }
-  return command;
-}
+    "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).\n"
+    "Another network, which judges whether two views show one place: samewhere train pairs --help";
 
 // What would be found out only after all images are read, or after hours.
 void check(const Job& job) {
   plan_network(job.config);  // throws where no layers fit
-  const std::filesystem::path& out = job.out;
-  if (out.extension() != ".onnx") {
-    throw core::InputError(
-        fmt::format("--out {}: expected a file name that ends in .onnx", out.string()));
-  }
-  require_free(out);
-  core::make_writable_folder(std::filesystem::absolute(out).parent_path());
+  require_writable_network(job.out);
 }
 
 ImageSet read(const Job& job) {
@@ -175,15 +109,6 @@ int train(const Job& job) {
   return core::kDone;
 }
 
-void use_threads(int num_threads) {
-  set_num_threads(num_threads > 0 ? num_threads : core::num_hardware_threads());
-  // the network's memory comes and goes with every step: kept, it need not be cleared each time
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  const std::string advice = advice_on_linear_algebra();
-  if (!advice.empty()) spdlog::warn("{}", advice);
-}
-
 int run(int argc, char** argv) {
   CLI::App app("Train the network that describes a view, and export it to ONNX", "samewhere train");
   Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION};
@@ -194,20 +119,10 @@ int run(int argc, char** argv) {
                  "the same, of other places: only to tell how well it goes; without it, blocks of "
                  "--images are held back for that");
   app.add_option("--out", job.out, "FILE.onnx, a name that is free")->required();
-  std::map<std::string, std::string> given;
-  OptionMaker make_options(app, given);
-  visit_fields(job.config, make_options);
+  const SettingOptions options(app, job.config);
   app.footer(kExamples);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    return core::complain("samewhere", std::string(error.what()) + " (see samewhere train --help)",
-                          core::kBadInput);
-  }
-  for (const auto& [key, text] : given) {
-    core::set_config(job.config, key + "=" + text, option_of(key) + " " + text);
-  }
+  if (const std::optional<int> status = parse(app, argc, argv)) return *status;
+  options.take();
   core::catch_interrupts();
   use_threads(job.config.threads);
   return train(job);
@@ -218,5 +133,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace samewhere;
-  return core::run_program("samewhere", [&] { return train::run(argc, argv); });
+  const bool is_of_pairs = argc > 1 && std::string_view(argv[1]) == "pairs";
+  return core::run_program("samewhere", [&] {
+    return is_of_pairs ? train::train_pairs(argc, argv) : train::run(argc, argv);
+  });
 }

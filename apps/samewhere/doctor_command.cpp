@@ -17,8 +17,8 @@
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/describe/describer.hpp>
-#include <samewhere/describe/inference.hpp>
 #include <samewhere/describe/preprocess.hpp>
+#include <samewhere/network/inference.hpp>
 #include <samewhere/twin/picture_cache.hpp>
 
 namespace samewhere::app {
@@ -43,7 +43,7 @@ std::vector<report::Figure> system_figures() {
       {"Ceres", CERES_VERSION_STRING},
       {"threads", fmt::format("{} on this machine, {} in OpenCV", core::num_hardware_threads(),
                               cv::getNumThreads())},
-      {"networks run by", describe::inference_backend()},
+      {"networks run by", network::inference_backend()},
       {"rendered pictures", picture_cache()},
   };
 }
@@ -81,8 +81,9 @@ std::vector<report::Figure> describer_figures(const describe::Config& config) {
   const auto length = describer->describe(frame, picture).unit.size();
   const bool is_network = config.method == describe::Method::kAutoencoder;
   return {
-      {"view described by",
-       is_network ? describe::find_network(config.network).string() : std::string("HOG")},
+      {"view described by", is_network
+                                ? network::find_network("describe.network", config.network).string()
+                                : std::string("HOG")},
       {"  descriptor", fmt::format("{} numbers, describer {:016x}", length, describer->checksum())},
       {"  time", fmt::format("{:.1f} ms preprocessing + {:.1f} ms description (640x480, median of "
                              "50)",
@@ -91,7 +92,7 @@ std::vector<report::Figure> describer_figures(const describe::Config& config) {
 
 bool is_there(const std::string& network) {
   try {
-    describe::find_network(network);
+    network::find_network("describe.network", network);
   } catch (const core::InputError&) {
     return false;
   }

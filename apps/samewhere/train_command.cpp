@@ -94,7 +94,9 @@ void add_words_command(CLI::App& train) {
 
 void add_train_command(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
-      "train", "Train the network that describes a view (samewhere train --help)");
+      "train",
+      "Train the network that describes a view (samewhere train --help), or, with `pairs`, "
+      "the one that judges pairs of views");
   // all that follows is for the training program, --help too; but for the words, which need none
   sub->set_help_flag();
   sub->prefix_command();

@@ -9,8 +9,8 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/describe/autoencoder.hpp>
-#include <samewhere/describe/inference.hpp>
 #include <samewhere/describe/preprocess.hpp>
+#include <samewhere/network/inference.hpp>
 
 namespace samewhere::describe {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kVersion = "autoencoder 1";
 
 // Where the file lies and how HOG is set does not change the code.
-std::uint64_t checksum_of(Config config, const NetworkFile& network) {
+std::uint64_t checksum_of(Config config, const network::NetworkFile& network) {
   config.network.clear();
   config.hog = HogConfig{};
   return core::checksum(
@@ -35,7 +35,8 @@ bool is_of_one_level(const cv::Mat& grey) {
 
 class Autoencoder : public Describer {
  public:
-  explicit Autoencoder(const Config& config) : Autoencoder(config, find_network(config.network)) {}
+  explicit Autoencoder(const Config& config)
+      : Autoencoder(config, network::find_network("describe.network", config.network)) {}
 
   core::Descriptor describe(core::FrameId frame, const cv::Mat& image) override {
     const cv::Mat prepared = preprocess(image, config_);
@@ -57,23 +58,29 @@ class Autoencoder : public Describer {
 
  private:
   Autoencoder(const Config& config, const std::filesystem::path& path)
-      : Autoencoder(config, read_network(path)) {}
+      : Autoencoder(config, network::read_network(path)) {}
 
-  Autoencoder(const Config& config, const NetworkFile& network)
+  Autoencoder(const Config& config, const network::NetworkFile& network)
       : config_(config),
         path_(network.path),
         input_px_(network.input_px),
         checksum_(checksum_of(config, network)),
-        inference_(make_inference(network)) {
+        inference_(network::make_inference(network)) {
     // whether it can be run shows only here, and is better known before the first frame
     code_length_ = inference_->run(cv::Mat(input_px_, CV_32FC1, cv::Scalar(0.5))).size();
+    if (code_length_ < 2) {
+      throw core::InputError(
+          fmt::format("{}: the network's output {} is 1x1; expected one vector, 1xN with N at "
+                      "least 2",
+                      path_.string(), network.output_name));
+    }
   }
 
   Config config_;
   std::filesystem::path path_;
   cv::Size input_px_;
   std::uint64_t checksum_;
-  std::unique_ptr<Inference> inference_;
+  std::unique_ptr<network::Inference> inference_;
   std::size_t code_length_ = 0;
 };
 

@@ -12,8 +12,8 @@ namespace samewhere::describe {
 // method): the preprocessed picture, reduced to the network's input and scaled to [0, 1]. A view of
 // one grey level is all zero, whatever the network would make of it. describe() throws InputError
 // naming the network if its code is not finite.
-// Throws InputError as find_network, read_network and make_inference do, and if the network's
-// output is not 1xN.
+// Throws InputError as network::find_network, read_network and make_inference do, and if the
+// network's output is not 1xN with N at least 2.
 std::unique_ptr<Describer> make_autoencoder(const Config& config);
 
 // What a network is fed, in use and in training: a view as preprocess() gives it, reduced by

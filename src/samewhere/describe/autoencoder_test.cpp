@@ -15,14 +15,15 @@
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/describe/describer.hpp>
-#include <samewhere/describe/inference.hpp>
 #include <samewhere/describe/preprocess.hpp>
-#include <samewhere/describe/test_onnx.hpp>
+#include <samewhere/network/inference.hpp>
+#include <samewhere/network/test_onnx.hpp>
 
 namespace samewhere::describe {
 namespace {
 
-using test::onnx_file;
+using network::test::onnx_file;
+namespace test = network::test;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -231,10 +232,10 @@ TEST_F(Autoencoder, AMissingNetworkIsNamedWithBothPlacesLookedAt) {
 
 TEST_F(Autoencoder, APictureOfAnotherSizeIsAMistakeOfOurs) {
   const Config config = config_for(onnx_file({}));
-  const auto inference = make_inference(read_network(config.network));
+  const auto inference = network::make_inference(network::read_network(config.network));
   EXPECT_THROW(inference->run(cv::Mat(32, 24, CV_32FC1, cv::Scalar(0))), core::ContractError);
   EXPECT_THROW(inference->run(cv::Mat(24, 32, CV_8UC1, cv::Scalar(0))), core::ContractError);
-  EXPECT_FALSE(inference_backend().empty());
+  EXPECT_FALSE(network::inference_backend().empty());
 }
 
 }  // namespace

@@ -21,9 +21,9 @@ Batch batch_of(const ImageSet& images, const Config& config, std::uint64_t seed)
       .batch(all, seed);
 }
 
-std::unique_ptr<describe::Inference> exported(const Autoencoder& autoencoder) {
-  return describe::make_inference(
-      describe::parse_network("exported", onnx_bytes(autoencoder.encoder(), "")));
+std::unique_ptr<network::Inference> exported(const Autoencoder& autoencoder) {
+  return network::make_inference(
+      network::parse_network("exported", onnx_bytes(autoencoder.encoder(), "")));
 }
 
 TEST(NetworkPlan, ACodeThatNoLayerGivesIsRefused) {
@@ -84,7 +84,8 @@ TEST(Autoencoder, LearnsAndRestoredGoesOnWithTheSameBits) {
   EXPECT_NE(second.error(batch), first.error(batch));
   second.restore(first.state());
   for (int i = 0; i < 3; ++i) EXPECT_EQ(first.learn(batch, 1e-3), second.learn(batch, 1e-3));
-  EXPECT_EQ(parameters_of(first.encoder()), parameters_of(second.encoder()));
+  EXPECT_EQ(parameters_of(first.encoder().convolutions),
+            parameters_of(second.encoder().convolutions));
   EXPECT_EQ(first.error(batch), second.error(batch));
 }
 

@@ -18,7 +18,7 @@ namespace {
 using core::InputError;
 using nlohmann::json;
 
-constexpr std::string_view kFormat = "samewhere training 2 ";
+constexpr std::string_view kFormat = "samewhere training 3 ";
 
 std::size_t num_weights(const ConvolutionPlan& plan) {
   return static_cast<std::size_t>(plan.num_outputs) * static_cast<std::size_t>(plan.num_inputs) *
@@ -74,10 +74,10 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
                        {"commits", checkpoint.commits},
                        {"images_sha256", checkpoint.images_sha256},
                        {"history", history},
-                       {"num_autoencoder_bytes", checkpoint.autoencoder.size()},
+                       {"num_learner_bytes", checkpoint.learner.size()},
                        {"num_best_parameters", checkpoint.best_parameters.size()},
                        {"num_best_codes", checkpoint.best_codes.size()}};
-  const std::string content = header.dump() + "\n" + checkpoint.autoencoder +
+  const std::string content = header.dump() + "\n" + checkpoint.learner +
                               bytes_of(checkpoint.best_parameters) +
                               bytes_of(checkpoint.best_codes);
   core::write_file(path, first_line(content) + content);
@@ -91,13 +91,13 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   try {
     const std::string_view blocks = after_line(content);
     const json header = json::parse(content.substr(0, content.size() - blocks.size()));
-    const auto num_bytes = header.at("num_autoencoder_bytes").get<std::size_t>();
+    const auto num_bytes = header.at("num_learner_bytes").get<std::size_t>();
     const auto codes_start =
         num_bytes + header.at("num_best_parameters").get<std::size_t>() * sizeof(float);
     const auto size = codes_start + header.at("num_best_codes").get<std::size_t>() * sizeof(float);
     core::require(blocks.size() == size, "a checkpoint is as long as it says");
     Checkpoint checkpoint = from_header(header);
-    checkpoint.autoencoder = blocks.substr(0, num_bytes);
+    checkpoint.learner = blocks.substr(0, num_bytes);
     checkpoint.best_parameters = numbers_of(blocks.substr(num_bytes, codes_start - num_bytes));
     checkpoint.best_codes = numbers_of(blocks.substr(codes_start));
     return checkpoint;
@@ -115,32 +115,32 @@ bool is_there(const std::filesystem::path& path) {
   return is_there;
 }
 
-std::vector<float> parameters_of(const Encoder& encoder) {
+std::vector<float> parameters_of(std::span<const Convolution> convolutions) {
   std::vector<float> parameters;
-  for (const Convolution& convolution : encoder.convolutions) {
+  for (const Convolution& convolution : convolutions) {
     parameters.insert(parameters.end(), convolution.weights.begin(), convolution.weights.end());
     parameters.insert(parameters.end(), convolution.biases.begin(), convolution.biases.end());
   }
   return parameters;
 }
 
-Encoder encoder_with(const NetworkPlan& plan, const std::vector<float>& parameters) {
-  Encoder encoder{.input_px = plan.input_px};
-  auto next = parameters.begin();
+std::vector<Convolution> convolutions_with(std::span<const ConvolutionPlan> plans,
+                                           std::span<const float> parameters) {
   const auto take = [&](std::size_t count) {
-    core::require(count <= static_cast<std::size_t>(parameters.end() - next),
-                  "the parameters are those of the plan");
-    const auto first = next;
-    next += static_cast<std::ptrdiff_t>(count);
-    return std::vector<float>(first, next);
+    core::require(count <= parameters.size(), "the parameters are those of the plan");
+    const std::vector<float> taken(parameters.begin(),
+                                   parameters.begin() + static_cast<std::ptrdiff_t>(count));
+    parameters = parameters.subspan(count);
+    return taken;
   };
-  for (const ConvolutionPlan& convolution : plan.convolutions) {
-    std::vector<float> weights = take(num_weights(convolution));
-    std::vector<float> biases = take(static_cast<std::size_t>(convolution.num_outputs));
-    encoder.convolutions.push_back({convolution, std::move(weights), std::move(biases)});
+  std::vector<Convolution> convolutions;
+  for (const ConvolutionPlan& plan : plans) {
+    std::vector<float> weights = take(num_weights(plan));
+    std::vector<float> biases = take(static_cast<std::size_t>(plan.num_outputs));
+    convolutions.push_back({plan, std::move(weights), std::move(biases)});
   }
-  core::require(next == parameters.end(), "the parameters are those of the plan");
-  return encoder;
+  core::require(parameters.empty(), "the parameters are those of the plan");
+  return convolutions;
 }
 
 }  // namespace samewhere::train

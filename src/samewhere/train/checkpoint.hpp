@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace samewhere::train {
 
-// How one pass over the images went. Errors are mean squares in shares of the targets' variance.
+// How one pass over the examples went. What an error is, the learner says.
 struct EpochFigures {
   int epoch = 0;  // from 1
   double training_error = 0.0;
@@ -23,9 +24,9 @@ struct Checkpoint {
   std::string images_sha256;
   std::vector<std::string> commits;  // of the programs that trained, one after the other
   std::vector<EpochFigures> history;
-  std::string autoencoder;             // Autoencoder::state() after the last epoch
-  std::vector<float> best_parameters;  // of the encoder with the least validation error
-  std::vector<float> best_codes;       // its codes of a few views, one after the other
+  std::string learner;                 // state() of what learns after the last epoch
+  std::vector<float> best_parameters;  // of the network with the least validation error
+  std::vector<float> best_codes;       // what it made of a few inputs, one after the other
 };
 
 // Writes the whole file or nothing. Throws InputError: no space, no permission.
@@ -37,8 +38,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path);
 // too long, a folder that may not be looked into.
 bool is_there(const std::filesystem::path& path);
 
-// All weights and biases of an encoder in a row; and back into one of the same plan.
-std::vector<float> parameters_of(const Encoder& encoder);
-Encoder encoder_with(const NetworkPlan& plan, const std::vector<float>& parameters);
+// All weights and biases of trained convolutions in a row; and back into those of the same plans.
+std::vector<float> parameters_of(std::span<const Convolution> convolutions);
+std::vector<Convolution> convolutions_with(std::span<const ConvolutionPlan> plans,
+                                           std::span<const float> parameters);
 
 }  // namespace samewhere::train

@@ -20,7 +20,7 @@ Checkpoint small_checkpoint() {
           .images_sha256 = "12ab",
           .commits = {"abc", "def"},
           .history = {{1, 0.5, 0.625}, {2, 0.25, 0.75}},
-          .autoencoder = std::string("state\n\0\xff", 8),
+          .learner = std::string("state\n\0\xff", 8),
           .best_parameters = {1.0F, -2.5F, 3e-20F},
           .best_codes = {0.0F, 7.0F}};
 }
@@ -38,7 +38,7 @@ TEST(Checkpoint, ReadsBackAsItWasWritten) {
   EXPECT_EQ(read.history[1].epoch, 2);
   EXPECT_EQ(read.history[1].training_error, 0.25);
   EXPECT_EQ(read.history[1].validation_error, 0.75);
-  EXPECT_EQ(read.autoencoder, written.autoencoder);
+  EXPECT_EQ(read.learner, written.learner);
   EXPECT_EQ(read.best_parameters, written.best_parameters);
   EXPECT_EQ(read.best_codes, written.best_codes);
 }

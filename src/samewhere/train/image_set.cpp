@@ -17,6 +17,7 @@
 #include <samewhere/input/image_file.hpp>
 #include <samewhere/input/open.hpp>
 #include <samewhere/train/examples.hpp>
+#include <samewhere/train/held_back.hpp>
 #include <samewhere/train/image_set.hpp>
 #include <samewhere/train/sha256.hpp>
 #include <samewhere/twin/studio.hpp>
@@ -109,30 +110,6 @@ std::string digest_of(const ImageSet& images) {
   return sha.hex();
 }
 
-bool show_the_same(const std::string& a, const std::string& b) {
-  if (twin::is_twin_spec(a) != twin::is_twin_spec(b)) return false;
-  if (twin::is_twin_spec(a)) {
-    const twin::Spec first = twin::parse_spec(a);
-    const twin::Spec second = twin::parse_spec(b);
-    return first.preset == second.preset && first.seed == second.seed;
-  }
-  std::error_code ignored;  // what is not there is found when it is read
-  return a == b || std::filesystem::equivalent(a, b, ignored);
-}
-
-void require_other_places(std::span<const std::string> sources,
-                          std::span<const std::string> validate) {
-  for (const std::string& held_back : validate) {
-    const auto same = std::find_if(sources.begin(), sources.end(), [&](const std::string& source) {
-      return show_the_same(source, held_back);
-    });
-    if (same == sources.end()) continue;
-    throw core::InputError(fmt::format(
-        "--validate {}: is learnt from, too (--images {}), expected places not seen in training",
-        held_back, *same));
-  }
-}
-
 // Views next to each other in one source, from `begin` up to `end`.
 struct Block {
   int begin = 0;
@@ -201,7 +178,7 @@ int source_of(const ImageSet& images, int view) {
 
 ImageSet read_images(std::span<const std::string> sources, std::span<const std::string> validate,
                      const Config& config, const ReadingProgress& on_progress) {
-  require_other_places(sources, validate);
+  require_other_places(sources, validate, "--images");
   ImageSet images;
   const auto read = [&](const std::string& name, bool is_held_back) {
     if (core::is_interrupted()) return;

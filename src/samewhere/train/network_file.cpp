@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <system_error>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/file.hpp>
-#include <samewhere/describe/inference.hpp>
+#include <samewhere/network/inference.hpp>
 #include <samewhere/train/network_file.hpp>
 #include <samewhere/train/onnx_file.hpp>
 #include <samewhere/train/sha256.hpp>
@@ -17,33 +13,17 @@
 namespace samewhere::train {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 constexpr double kMaxExportError = 1e-5;
 
 constexpr const char* kPreparation =
     "grey, 360 rows x 480 columns, histogram equalisation, reduced by averaging over the area, "
     "divided by 255";
 
-// "key: value" lines.
-OrderedJson settings_as_json(const Config& config) {
-  OrderedJson settings;
-  std::istringstream lines(core::config_as_yaml(config));
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t colon = line.find(": ");
-    if (colon != std::string::npos) settings[line.substr(0, colon)] = line.substr(colon + 2);
-  }
-  return settings;
-}
-
 OrderedJson layers_as_json(const NetworkPlan& plan) {
   OrderedJson layers = OrderedJson::array();
   for (std::size_t i = 0; i < plan.convolutions.size(); ++i) {
     const ConvolutionPlan& convolution = plan.convolutions[i];
-    layers.push_back(
-        fmt::format("convolution {0} x {0}, {1} to {2} channels, stride {3}, padding {4}",
-                    convolution.kernel_px, convolution.num_inputs, convolution.num_outputs,
-                    convolution.stride_px, convolution.padding_px));
+    layers.push_back(layer_text(convolution));
     if (i + 1 < plan.convolutions.size()) layers.push_back("ReLU, maximum 2 x 2");
     if (i == 0) layers.push_back("each position over sqrt(1 + the sum of its squares)");
   }
@@ -72,41 +52,29 @@ OrderedJson images_as_json(const ImageSet& images, const Split& split) {
           {"sha256_of_prepared_images", images.sha256}};
 }
 
-OrderedJson epochs_as_json(const std::vector<EpochFigures>& history) {
-  OrderedJson epochs = OrderedJson::array();
-  for (const EpochFigures& epoch : history) {
-    epochs.push_back({{"epoch", epoch.epoch},
-                      {"training_error", epoch.training_error},
-                      {"validation_error", epoch.validation_error}});
-  }
-  return epochs;
-}
-
-std::string card_text(const Job& job, const ImageSet& images, const Trainer& trainer,
-                      const Quality& quality, const std::string& bytes) {
+OrderedJson card_for(const Job& job, const ImageSet& images, const Trainer& trainer,
+                     const Quality& quality, const std::string& bytes) {
   const NetworkPlan& plan = trainer.plan();
-  const OrderedJson card = {{"network", job.out.filename().string()},
-                            {"sha256", sha256_of(bytes)},
-                            {"num_bytes", bytes.size()},
-                            {"command", job.command},
-                            {"version", job.version},
-                            {"commits", trainer.commits()},
-                            {"settings", settings_as_json(job.config)},
-                            {"images", images_as_json(images, trainer.split())},
-                            {"input",
-                             {{"name", "image"},
-                              {"shape", {1, 1, plan.input_px.height, plan.input_px.width}},
-                              {"preparation", kPreparation}}},
-                            {"output", {{"name", "code"}, {"shape", {1, plan.code_size}}}},
-                            {"layers", layers_as_json(plan)},
-                            {"best_epoch", quality.best.epoch},
-                            {"validation",
-                             {{"error", quality.best.validation_error},
-                              {"recognition", quality.recognition},
-                              {"recognition_of_hog", quality.recognition_of_hog}}},
-                            {"epochs", epochs_as_json(trainer.history())}};
-  // names of files may hold any bytes
-  return card.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  return {{"network", job.out.filename().string()},
+          {"sha256", sha256_of(bytes)},
+          {"num_bytes", bytes.size()},
+          {"command", job.command},
+          {"version", job.version},
+          {"commits", trainer.commits()},
+          {"settings", settings_as_json(core::config_as_yaml(job.config))},
+          {"images", images_as_json(images, trainer.split())},
+          {"input",
+           {{"name", "image"},
+            {"shape", {1, 1, plan.input_px.height, plan.input_px.width}},
+            {"preparation", kPreparation}}},
+          {"output", {{"name", "code"}, {"shape", {1, plan.code_size}}}},
+          {"layers", layers_as_json(plan)},
+          {"best_epoch", quality.best.epoch},
+          {"validation",
+           {{"error", quality.best.validation_error},
+            {"recognition", quality.recognition},
+            {"recognition_of_hog", quality.recognition_of_hog}}},
+          {"epochs", epochs_as_json(trainer.history())}};
 }
 
 // In shares of the largest number of the trained code; no finite number if either is not.
@@ -125,7 +93,7 @@ double difference(std::span<const float> trained, std::span<const float> exporte
 
 // A network that learning has ruined: that is the settings' fault.
 void require_usable(const Encoder& encoder, std::span<const float> codes, const Config& config) {
-  const std::vector<float> parameters = parameters_of(encoder);
+  const std::vector<float> parameters = parameters_of(encoder.convolutions);
   const bool is_finite = std::all_of(parameters.begin(), parameters.end(),
                                      [](float weight) { return std::isfinite(weight); });
   const bool is_alive =
@@ -136,32 +104,9 @@ void require_usable(const Encoder& encoder, std::span<const float> codes, const 
       is_finite ? "gives nothing but zeros" : "has weights that are not finite"));
 }
 
-std::filesystem::path beside(const std::filesystem::path& network, const char* ending) {
-  std::filesystem::path path = network;
-  return path.replace_extension(ending);
-}
-
 }  // namespace
 
-std::filesystem::path checkpoint_of(const std::filesystem::path& network) {
-  return beside(network, ".checkpoint");
-}
-
-std::filesystem::path card_of(const std::filesystem::path& network) {
-  return beside(network, ".json");
-}
-
-void require_free(const std::filesystem::path& network) {
-  if (is_there(checkpoint_of(network))) return;
-  for (const std::filesystem::path& path : {network, card_of(network)}) {
-    if (!is_there(path)) continue;
-    throw core::InputError(
-        fmt::format("--out {}: {} is there already, expected a name that is free", network.string(),
-                    path.string()));
-  }
-}
-
-double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
+double export_error(network::Inference& exported, std::span<const cv::Mat> inputs,
                     std::span<const float> trained_codes) {
   core::require(!inputs.empty() && trained_codes.size() % inputs.size() == 0,
                 "there is one code for each input");
@@ -180,7 +125,7 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer) 
   const Encoder encoder = trainer.best_encoder();
   require_usable(encoder, trainer.best_codes(), job.config);
   const std::string bytes = onnx_bytes(encoder, kPreparation);
-  const auto exported = describe::make_inference(describe::parse_network(job.out, bytes));
+  const auto exported = network::make_inference(network::parse_network(job.out, bytes));
   core::require(
       export_error(*exported, trainer.checked_inputs(), trainer.best_codes()) <= kMaxExportError,
       "the exported network gives the codes of the trained one");
@@ -190,10 +135,7 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer) 
       .recognition = recognition(images, split, job.config,
                                  [&](const cv::Mat& input) { return exported->run(input); }),
       .recognition_of_hog = recognition(images, split, job.config, hog_of_input)};
-  core::write_file(job.out, bytes);
-  core::write_file(card_of(job.out), card_text(job, images, trainer, quality, bytes));
-  std::error_code ignored;  // what stays does no harm
-  std::filesystem::remove(checkpoint_of(job.out), ignored);
+  write_with_card(job.out, bytes, card_for(job, images, trainer, quality, bytes));
   return quality;
 }
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <samewhere/describe/inference.hpp>
+#include <samewhere/network/inference.hpp>
+#include <samewhere/train/card.hpp>
 #include <samewhere/train/trainer.hpp>
 
 namespace samewhere::train {
@@ -20,14 +21,6 @@ struct Job {
   std::string version;  // of the program
 };
 
-// Files beside the network: what the training goes on from, and what tells how it came about.
-std::filesystem::path checkpoint_of(const std::filesystem::path& network);
-std::filesystem::path card_of(const std::filesystem::path& network);
-
-// Throws InputError if the network or its card is there already, unless the checkpoint of a
-// training is, too, or if the system cannot say.
-void require_free(const std::filesystem::path& network);
-
 // What the finished network does on the validation views.
 struct Quality {
   EpochFigures best;
@@ -36,7 +29,7 @@ struct Quality {
 };
 
 // Writes the best encoder of a training as an ONNX file with its card (JSON) and removes the
-// checkpoint. Before, the very bytes that are written are run by describe::make_inference on
+// checkpoint. Before, the very bytes that are written are run by network::make_inference on
 // Trainer::checked_inputs(): an export_error() above 1e-5 throws ContractError. Throws InputError
 // if the network's weights are not finite or all its codes are zero, and if a file cannot be
 // written. After an error there is no network, and the checkpoint is still there.
@@ -45,7 +38,7 @@ Quality write_network(const Job& job, const ImageSet& images, Trainer& trainer);
 // The largest difference between what the trained network made of some inputs (one code after the
 // other) and what the exported one makes of them, in shares of the largest number of the code; not
 // finite if a number of either is not.
-double export_error(describe::Inference& exported, std::span<const cv::Mat> inputs,
+double export_error(network::Inference& exported, std::span<const cv::Mat> inputs,
                     std::span<const float> trained_codes);
 
 }  // namespace samewhere::train

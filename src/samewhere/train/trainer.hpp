@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <samewhere/train/autoencoder.hpp>
-#include <samewhere/train/checkpoint.hpp>
 #include <samewhere/train/config.hpp>
 #include <samewhere/train/image_set.hpp>
+#include <samewhere/train/training_run.hpp>
 
 namespace samewhere::train {
 
@@ -26,10 +26,10 @@ class Trainer {
 
   const NetworkPlan& plan() const { return plan_; }
   const Split& split() const { return split_; }
-  const std::vector<EpochFigures>& history() const { return state_.history; }
+  const std::vector<EpochFigures>& history() const { return run_.history(); }
   // Of the programs that had a part in it, each once where it took over. Two may train differently.
-  const std::vector<std::string>& commits() const { return state_.commits; }
-  bool is_done() const;
+  const std::vector<std::string>& commits() const { return run_.state().commits; }
+  bool is_done() const { return run_.is_done(); }
   // As the last epoch left it.
   Autoencoder& autoencoder() { return autoencoder_; }
 
@@ -40,29 +40,24 @@ class Trainer {
   std::optional<EpochFigures> run_epoch(const std::function<void(int, int)>& on_progress);
 
   // The epoch with the least validation error so far, and its encoder. At least one epoch is done.
-  EpochFigures best_epoch() const;
+  EpochFigures best_epoch() const { return run_.best_epoch(); }
   Encoder best_encoder() const;
 
   // Up to 16 validation views as the encoder sees them, and what the network itself, not its
   // export, made of them when it was best: one code after the other.
   std::vector<cv::Mat> checked_inputs() const;
-  std::span<const float> best_codes() const { return state_.best_codes; }
+  std::span<const float> best_codes() const { return run_.state().best_codes; }
 
  private:
-  void resume(const std::string& commit);
-  double learning_rate(int epoch) const;
-  std::vector<std::vector<int>> training_batches(int epoch) const;
-  void require_finite(double error, int epoch) const;
-  std::optional<double> learn(int epoch, const std::function<void(int, int)>& on_progress);
+  std::optional<double> learn(const std::function<void(int, int)>& on_progress);
   double validation_error();
   std::vector<float> checked_codes();
 
   Config config_;
-  std::filesystem::path checkpoint_path_;
   NetworkPlan plan_;
   Split split_;
   ExampleMaker examples_;
-  Checkpoint state_;
+  TrainingRun run_;
   Autoencoder autoencoder_;
 };
 

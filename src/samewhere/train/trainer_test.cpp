@@ -48,9 +48,10 @@ TEST_F(Training, StoppedAfterTwoEpochsAndResumedIsTheSameToTheLastBit) {
   ASSERT_EQ(second.history().size(), 2U);
   run_epochs(second, 2);
   EXPECT_TRUE(second.is_done());
-  EXPECT_EQ(parameters_of(whole.autoencoder().encoder()),
-            parameters_of(second.autoencoder().encoder()));
-  EXPECT_EQ(parameters_of(whole.best_encoder()), parameters_of(second.best_encoder()));
+  EXPECT_EQ(parameters_of(whole.autoencoder().encoder().convolutions),
+            parameters_of(second.autoencoder().encoder().convolutions));
+  EXPECT_EQ(parameters_of(whole.best_encoder().convolutions),
+            parameters_of(second.best_encoder().convolutions));
   EXPECT_EQ(whole.history()[3].validation_error, second.history()[3].validation_error);
 }
 
@@ -168,7 +169,7 @@ TEST_F(Training, LeavesANetworkAndItsCard) {
   EXPECT_EQ(card["images"]["validation_sources"], "blocks of the sources");
   EXPECT_EQ(card["epochs"].size(), 4U);
   EXPECT_THAT(card["commits"], testing::ElementsAre("abc"));
-  const auto inference = describe::make_inference(describe::read_network(job.out));
+  const auto inference = network::make_inference(network::read_network(job.out));
   EXPECT_LE(export_error(*inference, trainer.checked_inputs(), trainer.best_codes()), 1e-5);
 }
 
@@ -237,8 +238,8 @@ TEST_F(Training, WritesTheNetworkThatWasBestOrNone) {
   {
     Trainer trainer(config, images_, checkpoint, "abc");
     while (!trainer.is_done()) run_epochs(trainer, 1);
-    ASSERT_NE(parameters_of(trainer.best_encoder()),
-              parameters_of(trainer.autoencoder().encoder()));
+    ASSERT_NE(parameters_of(trainer.best_encoder().convolutions),
+              parameters_of(trainer.autoencoder().encoder().convolutions));
   }
   const Checkpoint good = read_checkpoint(checkpoint);
   const auto write_after = [&](const auto& change) {

@@ -13,6 +13,7 @@
 #include <samewhere/geometry/pnp.hpp>
 #include <samewhere/geometry/two_view.hpp>
 #include <samewhere/optimize/motion_only.hpp>
+#include <samewhere/verify/epipolar.hpp>
 #include <samewhere/verify/measure.hpp>
 
 namespace samewhere::verify {
@@ -204,23 +205,14 @@ GeometryEvidence measure_epipolar(const View& query, const View& match,
                                   core::Random& random) {
   GeometryEvidence evidence;
   evidence.num_matches = static_cast<int>(matches.size());
-  geometry::PixelPairs pairs;
-  for (const auto& pair : matches) {
-    pairs.first_px.push_back(
-        match.features->undistorted_px[static_cast<std::size_t>(pair.first)].cast<double>());
-    pairs.second_px.push_back(
-        query.features->undistorted_px[static_cast<std::size_t>(pair.second)].cast<double>());
-  }
-  const auto found = geometry::estimate_fundamental(
-      pairs, {.max_error_px = config.max_error_px, .max_iterations = config.ransac_iterations},
-      random);
+  const auto found = epipolar_inliers(query, match, matches, config, random);
   if (!found) return evidence;
   std::vector<int> inlier_features;
   double sum_squared = 0.0;
-  for (const int i : found->inliers) {
-    const auto k = static_cast<std::size_t>(i);
-    inlier_features.push_back(matches[k].second);
-    sum_squared += geometry::sampson_squared(found->model, pairs.first_px[k], pairs.second_px[k]);
+  for (std::size_t i = 0; i < found->matches.size(); ++i) {
+    inlier_features.push_back(found->matches[i].second);
+    sum_squared += geometry::sampson_squared(found->fundamental, found->pairs.first_px[i],
+                                             found->pairs.second_px[i]);
   }
   evidence.num_inliers = static_cast<int>(inlier_features.size());
   evidence.inlier_ratio = static_cast<double>(evidence.num_inliers) / evidence.num_matches;
@@ -233,9 +225,7 @@ GeometryEvidence measure_epipolar(const View& query, const View& match,
 
 GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& query,
                                   const View& match, const MeasureSettings& settings) {
-  // seeded by the pair, not by a counter: judging a candidate again gives the same evidence
-  const std::uint64_t pair_seed = core::seed_of(settings.seed, "verify", candidate.query.value());
-  core::Random random(core::seed_of(pair_seed, "match", candidate.match.value()));
+  core::Random random = random_of(candidate, settings);
   const std::vector<Match> matches =
       match_pair(match.features->descriptors, query.features->descriptors, settings.features);
   const bool can_have_pose =

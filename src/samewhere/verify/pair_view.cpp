@@ -10,7 +10,9 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/features/hamming.hpp>
+#include <samewhere/features/match_pair.hpp>
 #include <samewhere/geometry/two_view.hpp>
+#include <samewhere/verify/epipolar.hpp>
 #include <samewhere/verify/pair_registration.hpp>
 #include <samewhere/verify/pair_view.hpp>
 
@@ -23,10 +25,13 @@ using features::Features;
 using features::Match;
 
 constexpr double kMinOverlapRatio = 0.1;
-constexpr double kLightSigma_px = 6.0;   // of a plane: light changes more slowly than that
-constexpr double kContrastFloor = 6.0;   // grey levels: noise of a bare wall is not made large
-constexpr double kMaxContrast = 3.0;     // standard deviations, beyond: clipped
-constexpr double kDotSigma_px = 1.2;     // of a plane
+constexpr double kLightSigma_px = 6.0;  // of a plane: light changes more slowly than that
+constexpr double kContrastFloor = 6.0;  // grey levels: noise of a bare wall is not made large
+constexpr double kMaxContrast = 3.0;    // standard deviations, beyond: clipped
+constexpr double kDotSigma_px = 1.2;    // of a plane
+constexpr int kAlikeShift_px = 3;       // of a plane
+constexpr int kAlikeWindow_px = 9;
+constexpr double kAlikeFloor = 0.01;     // of the variance: below, noise is compared
 constexpr double kSameSpotRatio = 0.03;  // of the width: a plane's fit is no closer than that
 
 void require_grey(const SeenView& seen) {
@@ -152,6 +157,35 @@ cv::Mat without_light(const cv::Mat& plane, const cv::Mat& mask) {
   return normal.mul(mask);
 }
 
+cv::Mat mean_of_window(const cv::Mat& plane) {
+  cv::Mat mean;
+  cv::blur(plane, mean, {kAlikeWindow_px, kAlikeWindow_px}, {-1, -1}, cv::BORDER_CONSTANT);
+  return mean;
+}
+
+cv::Mat shifted(const cv::Mat& plane, int x_px, int y_px) {
+  const cv::Mat map = (cv::Mat_<double>(2, 3) << 1, 0, x_px, 0, 1, y_px);
+  cv::Mat moved;
+  cv::warpAffine(plane, moved, map, plane.size(), cv::INTER_NEAREST);
+  return moved;
+}
+
+// Correlation of two pictures without their light, window by window: the best of all small shifts,
+// since what is near lies elsewhere than the registration says.
+cv::Mat alike(const cv::Mat& query, const cv::Mat& match, const cv::Mat& mask) {
+  const cv::Mat of_query = mean_of_window(query.mul(query)) + kAlikeFloor;
+  const cv::Mat of_match = mean_of_window(match.mul(match)) + kAlikeFloor;
+  cv::Mat best = cv::Mat::zeros(query.size(), CV_32F);
+  for (int y_px = -kAlikeShift_px; y_px <= kAlikeShift_px; ++y_px) {
+    for (int x_px = -kAlikeShift_px; x_px <= kAlikeShift_px; ++x_px) {
+      cv::Mat norm;
+      cv::sqrt(of_query.mul(shifted(of_match, x_px, y_px)) + 1e-6, norm);
+      best = cv::max(best, mean_of_window(query.mul(shifted(match, x_px, y_px))) / norm);
+    }
+  }
+  return cv::min(best, 1.0).mul(mask);
+}
+
 // Soft dots of height 1 at these pixels of a plane.
 cv::Mat dots(const std::vector<Vector2d>& pixels, const cv::Mat& mask) {
   cv::Mat plane = cv::Mat::zeros(kPairSide_px, kPairSide_px, CV_32F);
@@ -204,6 +238,12 @@ std::vector<Vector2d> all_mapped(const Matrix3d& map, std::vector<Vector2d> pixe
   return pixels;
 }
 
+// Seeded by the pair: what was registered before does not matter.
+core::Random random_of_registration(const features::View& query, const features::View& match) {
+  const std::uint64_t query_seed = core::seed_of(0, "register", query.frame.value());
+  return core::Random(core::seed_of(query_seed, "match", match.frame.value()));
+}
+
 cv::Mat stacked(const std::array<cv::Mat, kNumPairPlanes>& planes) {
   cv::Mat stack;
   cv::vconcat(planes.data(), planes.size(), stack);
@@ -219,26 +259,11 @@ cv::Mat PairView::plane(PairPlane plane) const {
 
 std::vector<Match> agreeing_matches(const core::Candidate& candidate, const features::View& query,
                                     const features::View& match, const MeasureSettings& settings) {
-  const std::uint64_t pair_seed = core::seed_of(settings.seed, "verify", candidate.query.value());
-  core::Random random(core::seed_of(pair_seed, "match", candidate.match.value()));
+  core::Random random = random_of(candidate, settings);
   const std::vector<Match> matches =
       match_pair(match.features->descriptors, query.features->descriptors, settings.features);
-  geometry::PixelPairs pairs;
-  for (const Match& pair : matches) {
-    const auto& first = match.features->undistorted_px[static_cast<std::size_t>(pair.first)];
-    const auto& second = query.features->undistorted_px[static_cast<std::size_t>(pair.second)];
-    pairs.first_px.push_back(first.cast<double>());
-    pairs.second_px.push_back(second.cast<double>());
-  }
-  const auto found =
-      geometry::estimate_fundamental(pairs,
-                                     {.max_error_px = settings.verify.max_error_px,
-                                      .max_iterations = settings.verify.ransac_iterations},
-                                     random);
-  std::vector<Match> agreeing;
-  if (!found) return agreeing;
-  for (const int i : found->inliers) agreeing.push_back(matches[static_cast<std::size_t>(i)]);
-  return agreeing;
+  const auto found = epipolar_inliers(query, match, matches, settings.verify, random);
+  return found ? found->matches : std::vector<Match>();
 }
 
 std::optional<PairView> register_pair(const SeenView& query, const SeenView& match,
@@ -249,7 +274,7 @@ std::optional<PairView> register_pair(const SeenView& query, const SeenView& mat
   const cv::Size query_px = query.view.image_size_px;
   const cv::Size match_px = match.view.image_size_px;
   const auto pairs = pixels_of(matches, *query.view.features, *match.view.features);
-  core::Random random(core::seed_of(0, "register", matches.size()));
+  core::Random random = random_of_registration(query.view, match.view);
   const auto registration = register_pictures(pairs, query_px, random);
   if (!registration) return std::nullopt;
   const Matrix3d& match_from_query = registration->second_from_first;
@@ -263,12 +288,14 @@ std::optional<PairView> register_pair(const SeenView& query, const SeenView& mat
   const auto only_match = missed({match, query, query_from_match}, config.max_distance_bits);
   const auto only_query = missed({query, match, match_from_query}, config.max_distance_bits);
   const cv::Mat mask = seen_by_both(query_from, query_px, match_from, match_px);
+  const cv::Mat query_plane = without_light(brought(query.grey, query_from), mask);
+  const cv::Mat match_plane = without_light(brought(match.grey, match_from), mask);
   return PairView{
-      .planes = stacked({without_light(brought(query.grey, query_from), mask),
-                         without_light(brought(match.grey, match_from), mask), mask,
+      .planes = stacked({query_plane, match_plane, mask,
                          dots(all_mapped(plane_from_query, pairs.first_px), mask),
                          dots(all_mapped(plane_from_query, only_query), mask),
-                         dots(all_mapped(plane_from_query * query_from_match, only_match), mask)}),
+                         dots(all_mapped(plane_from_query * query_from_match, only_match), mask),
+                         alike(query_plane, match_plane, mask)}),
       .overlap_ratio = overlap.ratio,
       .scale = query_from(0, 0),
       .is_homography = registration->is_homography};

@@ -27,8 +27,10 @@ enum class PairPlane : std::uint8_t {
   kAgree,           // features that match under one geometry
   kOnlyQueryShows,  // the query's features that should be seen in the match and are not
   kOnlyMatchShows,  // the match's, where they should be in the query
+  kAlike,           // how well the pictures correlate around here, at most 3 pixels of a plane
+                    // beside where they should, in [0, 1]; 0 where neither shows anything
 };
-inline constexpr int kNumPairPlanes = 6;
+inline constexpr int kNumPairPlanes = 7;
 inline constexpr int kPairSide_px = 128;
 
 // Two views laid onto each other: what one shows of a place beside what the other shows of it, so

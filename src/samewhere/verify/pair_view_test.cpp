@@ -144,6 +144,26 @@ TEST(RegisterPair, OtherLightChangesLittle) {
   EXPECT_GT(correlation(*pair), 0.97);
 }
 
+TEST(RegisterPair, WhereThePicturesDifferTheyAreNotAlike) {
+  const Wall place = wall(9);
+  const SeenView query = seen(place, shifted(0, 0));
+  SeenView match = seen(place, shifted(0, 0));
+  const cv::Mat other = wall(10).grey;
+  const cv::Rect poster(200, 150, 200, 150);
+  other(poster).copyTo(match.grey(poster));
+  const auto pair = registered(query, match);
+  ASSERT_TRUE(pair);
+  const cv::Mat alike = pair->plane(PairPlane::kAlike);
+  const auto of_plane = [&](int px) { return static_cast<int>(px / pair->scale); };
+  const int top = (kPairSide_px - of_plane(480)) / 2;  // the square is of the width
+  const cv::Rect inside(of_plane(230), top + of_plane(180), of_plane(140), of_plane(90));
+  const cv::Rect beside(of_plane(450), top + of_plane(180), of_plane(140), of_plane(90));
+  const double where_the_same = cv::mean(alike(beside))[0];
+  EXPECT_GT(where_the_same, 0.7);
+  EXPECT_LT(cv::mean(alike(inside))[0], 0.7 * where_the_same);
+  EXPECT_EQ(cv::norm(alike.rowRange(0, top - 1), cv::NORM_INF), 0.0);
+}
+
 TEST(RegisterPair, TheSamePairGivesTheSameBitsAndLeavesItsPicturesAlone) {
   const Wall place = wall(5);
   const SeenView query = seen(place, shifted(0, 0));

@@ -7,7 +7,7 @@
 
 #include <opencv2/core/types.hpp>
 
-namespace samewhere::describe {
+namespace samewhere::network {
 
 // An ONNX file that turns one grey picture into one vector, and what it says of its ends.
 struct NetworkFile {
@@ -19,9 +19,10 @@ struct NetworkFile {
   cv::Size input_px;
 };
 
-// The file itself, relative to the working directory; failing that, in the folder models/ of the
-// source that this program was built from. Throws InputError naming both if it is in neither.
-std::filesystem::path find_network(const std::string& file);
+// The file that a setting names: itself, relative to the working directory; failing that, in the
+// folder models/ of the source that this program was built from. Throws InputError naming the
+// setting and both places if it is in neither.
+std::filesystem::path find_network(const std::string& setting, const std::string& file);
 
 // Reads the file and the description of its ends. Throws InputError naming the file, what it holds
 // and what was expected: if it is no ONNX file or cut short, or unless it has one input of floats
@@ -30,7 +31,7 @@ NetworkFile read_network(const std::filesystem::path& path);
 // The same of bytes that need not be in the file yet: `path` is what complaints name.
 NetworkFile parse_network(const std::filesystem::path& path, std::string bytes);
 
-// Throws InputError naming the network and the shape unless that is 1xN with N at least 2.
-void require_code_shape(const NetworkFile& network, const std::vector<std::int64_t>& output_shape);
+// Throws InputError naming the network and the shape unless that is 1xN.
+void require_row(const NetworkFile& network, const std::vector<std::int64_t>& output_shape);
 
-}  // namespace samewhere::describe
+}  // namespace samewhere::network

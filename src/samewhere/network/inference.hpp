@@ -6,9 +6,9 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include <samewhere/describe/network_file.hpp>
+#include <samewhere/network/network_file.hpp>
 
-namespace samewhere::describe {
+namespace samewhere::network {
 
 // A network ready to run on the processor, one picture at a time and on one thread: the same
 // picture gives the same bits whatever else runs.
@@ -31,4 +31,4 @@ std::unique_ptr<Inference> make_inference(const NetworkFile& network);
 // "OpenCV dnn 4.6.0" or "ONNX Runtime 1.20.0": what make_inference() uses.
 std::string inference_backend();
 
-}  // namespace samewhere::describe
+}  // namespace samewhere::network

@@ -10,7 +10,7 @@
 
 #include <samewhere/core/random.hpp>
 
-namespace samewhere::describe::test {
+namespace samewhere::network::test {
 
 inline std::string varint(std::uint64_t value) {
   std::string bytes;
@@ -116,4 +116,4 @@ inline std::string onnx_file(const TestNetwork& network) {
          bytes(8, bytes(1, "") + number(2, 11));
 }
 
-}  // namespace samewhere::describe::test
+}  // namespace samewhere::network::test

@@ -7,9 +7,9 @@
 #include <onnxruntime_cxx_api.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/describe/inference.hpp>
+#include <samewhere/network/inference.hpp>
 
-namespace samewhere::describe {
+namespace samewhere::network {
 namespace {
 
 // One thread, so that the same bits come out on any number of cores.
@@ -55,7 +55,7 @@ class OnnxRuntimeInference : public Inference {
     const auto type = outputs.front().GetTensorTypeAndShapeInfo();
     core::require(type.GetElementType() == ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT,
                   "the output was declared as floats");
-    require_code_shape(ends_, type.GetShape());
+    require_row(ends_, type.GetShape());
     const auto* values = outputs.front().GetTensorData<float>();
     return {values, values + type.GetElementCount()};
   }
@@ -80,6 +80,6 @@ std::string inference_backend() {
   return std::string("ONNX Runtime ") + OrtGetApiBase()->GetVersionString();
 }
 
-}  // namespace samewhere::describe
+}  // namespace samewhere::network
 
 #endif

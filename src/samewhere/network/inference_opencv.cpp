@@ -10,9 +10,9 @@
 #include <opencv2/dnn.hpp>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/describe/inference.hpp>
+#include <samewhere/network/inference.hpp>
 
-namespace samewhere::describe {
+namespace samewhere::network {
 namespace {
 
 // OpenCV writes to stderr what it also throws; errors are ours to print.
@@ -47,7 +47,7 @@ class OpenCvInference : public Inference {
     core::require(picture.type() == CV_32FC1 && picture.size() == ends_.input_px,
                   "a network gets the picture it was made for");
     const cv::Mat code = forward(picture);
-    require_code_shape(ends_, std::vector<std::int64_t>(code.size.p, code.size.p + code.dims));
+    require_row(ends_, std::vector<std::int64_t>(code.size.p, code.size.p + code.dims));
     core::require(code.type() == CV_32F && code.isContinuous(), "OpenCV gives a row of floats");
     const auto* values = code.ptr<float>();
     return {values, values + code.total()};
@@ -87,6 +87,6 @@ std::unique_ptr<Inference> make_inference(const NetworkFile& network) {
 
 std::string inference_backend() { return "OpenCV dnn " CV_VERSION; }
 
-}  // namespace samewhere::describe
+}  // namespace samewhere::network
 
 #endif

@@ -1,5 +1,4 @@
-#include "labelled_pairs.hpp"
-
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -9,19 +8,23 @@
 
 #include <fmt/format.h>
 
-#include "impostor_rule.hpp"
-#include "whole_view.hpp"
+#include <samewhere/core/checksum.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/grey.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/core/random.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/features/orb.hpp>
+#include <samewhere/pairs/labelled_pairs.hpp>
+#include <samewhere/pairs/most_alike.hpp>
+#include <samewhere/pairs/other_camera.hpp>
+#include <samewhere/pairs/tower.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/walkthrough.hpp>
 
-namespace samewhere::bench {
+namespace samewhere::pairs {
 namespace {
 
 constexpr int kShortlist = 10;
@@ -39,11 +42,16 @@ struct KnownViews {
 
 class Viewer {
  public:
-  explicit Viewer(const pipeline::Config& config)
-      : features_(config.features), describer_(describe::make_describer(config.describe)) {}
+  Viewer(const pipeline::Config& config, const PairRule& rule)
+      : features_(config.features),
+        describer_(describe::make_describer(config.describe)),
+        seed_(core::checksum(config.source)),
+        other_cameras_(rule.other_cameras) {}
 
-  void add(const core::Frame& frame, KnownViews& known) {
-    const cv::Mat& image = frame.images.front();
+  void add(core::Frame frame, KnownViews& known) {
+    core::Random random(core::seed_of(seed_, "camera", frame.id.value()));
+    cv::Mat& image = frame.images.front();
+    if (random.uniform() < other_cameras_) image = by_another_camera(image, random);
     known.views.push_back({features::extract(frame, features_), core::as_grey(image).clone()});
     known.descriptors.push_back(describer_->describe(frame.id, image).unit);
   }
@@ -51,6 +59,8 @@ class Viewer {
  private:
   features::Config features_;
   std::unique_ptr<describe::Describer> describer_;
+  std::uint64_t seed_;
+  double other_cameras_;
 };
 
 void ask_every_view(KnownViews& known) {
@@ -77,14 +87,14 @@ KnownViews views_of_twin(const pipeline::Config& config, const PairRule& rule) {
   const twin::Walkthrough walk(twin::parse_spec(config.source), config.twin);
   const twin::Studio studio(walk, config.twin);
   core::Progress progress("looking at " + config.source, walk.num_frames() / rule.step);
-  Viewer viewer(config);
+  Viewer viewer(config, rule);
   KnownViews known;
   std::vector<int> frame_of;
   for (int index = 0; index < walk.num_frames(); index += rule.step) {
     core::stop_if_interrupted();
     core::Frame frame = walk.frame_without_pictures(index);
     frame.images = studio.pictures(index).images;
-    viewer.add(frame, known);
+    viewer.add(std::move(frame), known);
     frame_of.push_back(index);
     progress.update(static_cast<int>(frame_of.size()));
   }
@@ -96,7 +106,7 @@ KnownViews views_of_twin(const pipeline::Config& config, const PairRule& rule) {
 
 KnownViews views_of_recording(const pipeline::Config& config, const PairRule& rule) {
   const auto source = pipeline::open_source_with_truth(config);
-  Viewer viewer(config);
+  Viewer viewer(config, rule);
   KnownViews known;
   std::vector<int> frame_of;
   for (int index = 0; const auto frame = source->next(); ++index) {
@@ -110,19 +120,19 @@ KnownViews views_of_recording(const pipeline::Config& config, const PairRule& ru
   return known;
 }
 
-KnownViews views_of_tower(pipeline::Config config, int step) {
+KnownViews views_of_tower(pipeline::Config config, const PairRule& rule) {
   const std::vector<TowerImage> images = read_tower(config.source);
   config.source = (std::filesystem::path(config.source) / "walk.txt").string();
   const auto source = pipeline::open_source(config);
   core::Progress progress("looking at " + config.source, static_cast<int>(images.size()));
-  Viewer viewer(config);
+  Viewer viewer(config, rule);
   KnownViews known;
   std::vector<int> frame_of;
   for (int index = 0; const auto frame = source->next(); ++index) {
     core::stop_if_interrupted();
     progress.update(index);
     if (!images[static_cast<std::size_t>(index)].is_gallery) continue;
-    if (known.views.size() % static_cast<std::size_t>(step) == 0)
+    if (known.views.size() % static_cast<std::size_t>(rule.step) == 0)
       known.queries.push_back(static_cast<int>(known.views.size()));
     viewer.add(*frame, known);
     frame_of.push_back(index);
@@ -142,7 +152,7 @@ KnownViews views_of_tower(pipeline::Config config, int step) {
 KnownViews known_views(const std::string& source, const PairRule& rule) {
   pipeline::Config config = pipeline::profile("default");
   config.source = source;
-  if (is_tower(source)) return views_of_tower(config, rule.step);
+  if (is_tower(source)) return views_of_tower(config, rule);
   if (twin::is_twin_spec(source)) return views_of_twin(config, rule);
   return views_of_recording(config, rule);
 }
@@ -184,4 +194,4 @@ LabelledPairs labelled_pairs(const std::string& source, const PairRule& rule) {
   return labelled;
 }
 
-}  // namespace samewhere::bench
+}  // namespace samewhere::pairs

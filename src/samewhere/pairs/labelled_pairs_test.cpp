@@ -1,5 +1,3 @@
-#include "labelled_pairs.hpp"
-
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -9,8 +7,9 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/input/test_folder.hpp>
+#include <samewhere/pairs/labelled_pairs.hpp>
 
-namespace samewhere::bench {
+namespace samewhere::pairs {
 namespace {
 
 cv::Mat wall(std::uint64_t seed) {
@@ -82,4 +81,4 @@ TEST(LabelledPairs, ARecordingWithoutPlaceTruthIsRefused) {
 }
 
 }  // namespace
-}  // namespace samewhere::bench
+}  // namespace samewhere::pairs

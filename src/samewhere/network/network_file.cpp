@@ -10,9 +10,9 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/model_file.hpp>
-#include <samewhere/describe/network_file.hpp>
+#include <samewhere/network/network_file.hpp>
 
-namespace samewhere::describe {
+namespace samewhere::network {
 namespace {
 
 // An ONNX file is a protocol-buffer message ModelProto. Only the ends of its graph are read here,
@@ -200,8 +200,8 @@ bool is_picture(const End& end) {
 
 }  // namespace
 
-std::filesystem::path find_network(const std::string& file) {
-  return core::find_model("describe.network", file, "an ONNX network");
+std::filesystem::path find_network(const std::string& setting, const std::string& file) {
+  return core::find_model(setting, file, "an ONNX network");
 }
 
 NetworkFile read_network(const std::filesystem::path& path) {
@@ -226,11 +226,11 @@ NetworkFile parse_network(const std::filesystem::path& path, std::string bytes) 
   return network;
 }
 
-void require_code_shape(const NetworkFile& network, const std::vector<std::int64_t>& output_shape) {
-  if (output_shape.size() == 2 && output_shape[0] == 1 && output_shape[1] >= 2) return;
+void require_row(const NetworkFile& network, const std::vector<std::int64_t>& output_shape) {
+  if (output_shape.size() == 2 && output_shape[0] == 1 && output_shape[1] >= 1) return;
   throw core::InputError(fmt::format("{}: the network's output {} is {}; expected one vector, 1xN",
                                      network.path.string(), network.output_name,
                                      fmt::join(output_shape, "x")));
 }
 
-}  // namespace samewhere::describe
+}  // namespace samewhere::network

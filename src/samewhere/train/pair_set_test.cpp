@@ -1,0 +1,82 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/core/file.hpp>
+#include <samewhere/input/test_folder.hpp>
+#include <samewhere/train/pair_set.hpp>
+#include <samewhere/train/test_pairs.hpp>
+
+namespace samewhere::train {
+namespace {
+
+using input::complaint;
+using testing::HasSubstr;
+
+TEST(PackedPair, ComesBackWithinAStepAndZeroAndOneAsTheyWere) {
+  cv::Mat planes = test_planes(1, false);
+  core::Random random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const int row = static_cast<int>(random.index(static_cast<std::uint64_t>(planes.rows)));
+    const int column = static_cast<int>(random.index(static_cast<std::uint64_t>(planes.cols)));
+    const bool is_picture = row < 2 * verify::kPairSide_px;
+    planes.at<float>(row, column) =
+        static_cast<float>(random.uniform(is_picture ? -1.0 : 0.0, 1.0));
+  }
+  const cv::Mat back = unpacked(packed(planes));
+  EXPECT_LE(cv::norm(planes, back, cv::NORM_INF), 0.5 / 127.0 + 1e-6);
+  for (const float exact : {0.0F, 1.0F}) {
+    const cv::Mat at = planes == exact;
+    EXPECT_GT(cv::countNonZero(at), 100);
+    EXPECT_EQ(cv::norm(planes, back, cv::NORM_INF, at), 0.0) << exact;
+  }
+}
+
+TEST(PairSet, KeptInAFileComesBack) {
+  const input::TestFolder folder;
+  const PairSet written = test_pairs(4);
+  write_pairs(folder.at("pairs"), written, "these sources");
+  const PairSet read = load_pairs(folder.at("pairs"), "these sources");
+  ASSERT_EQ(read.pairs.size(), written.pairs.size());
+  for (std::size_t i = 0; i < read.pairs.size(); ++i) {
+    EXPECT_EQ(read.pairs[i].is_same, written.pairs[i].is_same);
+    EXPECT_EQ(cv::norm(read.pairs[i].planes, written.pairs[i].planes, cv::NORM_INF), 0.0);
+  }
+  ASSERT_EQ(read.sources.size(), 2U);
+  EXPECT_EQ(read.sources[1].source, "other pictures");
+  EXPECT_EQ(read.sources[1].num_wrong, 2);
+  EXPECT_TRUE(read.sources[1].is_held_back);
+  EXPECT_EQ(read.sha256.size(), 64U);
+}
+
+TEST(PairSet, OfOtherSourcesCutOrDamagedIsRefused) {
+  const input::TestFolder folder;
+  write_pairs(folder.at("pairs"), test_pairs(2), "these sources");
+  EXPECT_THAT(complaint([&] { load_pairs(folder.at("pairs"), "others"); }),
+              HasSubstr("of other sources"));
+  std::string bytes = core::read_file(folder.at("pairs"));
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  core::write_file(folder.at("changed"), bytes);
+  EXPECT_THAT(complaint([&] { load_pairs(folder.at("changed"), "these sources"); }),
+              HasSubstr("damaged"));
+  folder.cut("pairs", 0.9);
+  EXPECT_THAT(complaint([&] { load_pairs(folder.at("pairs"), "these sources"); }),
+              HasSubstr("damaged"));
+  folder.write("foreign", "a shopping list\n");
+  EXPECT_THAT(complaint([&] { load_pairs(folder.at("foreign"), ""); }), HasSubstr("no file of"));
+}
+
+TEST(PairSet, ABuildingIsNotLearntFromAndValidatedWith) {
+  const std::vector<std::string> learnt = {"twin:hotel?seed=3&similarity=0.9"};
+  const std::vector<std::string> held_back = {"twin:hotel?seed=3&similarity=0.8"};
+  EXPECT_THAT(complaint([&] { read_pairs(learnt, held_back, test_pair_config()); }),
+              HasSubstr("is learnt from, too"));
+}
+
+TEST(PairSet, TheIndicesAreThoseOfTheSources) {
+  const PairSet set = test_pairs(4);
+  EXPECT_THAT(pairs_of(set, false), testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+  EXPECT_THAT(pairs_of(set, true), testing::ElementsAre(8, 9, 10, 11));
+}
+
+}  // namespace
+}  // namespace samewhere::train
