@@ -106,7 +106,10 @@ class G2oRead : public ::testing::Test {
     return "";
   }
 
-  const std::string path_ = ::testing::TempDir() + "g2o_read_test.g2o";
+  // of each test its own: they may run at once
+  const std::string path_ = ::testing::TempDir() + "g2o_read_" +
+                            ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                            ".g2o";
 };
 
 // A ring with chords, in space or in the plane.
@@ -213,7 +216,7 @@ TEST_F(G2oRead, WhatIsBrokenIsNamedWithItsLine) {
       {vertices + edge + "FIX 9\n", "line 4: names vertex 9"}};
   for (const auto& [text, expected] : broken) {
     EXPECT_THAT(complaint(text), HasSubstr(expected)) << text;
-    EXPECT_THAT(complaint(text), HasSubstr("g2o_read_test.g2o")) << text;
+    EXPECT_THAT(complaint(text), HasSubstr("g2o_read_WhatIsBrokenIsNamedWithItsLine.g2o")) << text;
   }
 }
 
