@@ -176,8 +176,9 @@ std::string onnx_bytes(const PairNetwork& network, const std::string& descriptio
   onnx::ModelProto model = empty_model(description);
   onnx::GraphProto& graph = *model.mutable_graph();
   graph.set_name("pairs");
-  add_shape(*graph.add_input(), "planes",
-            {1, 1, verify::kNumPairPlanes * verify::kPairSide_px, verify::kPairSide_px});
+  add_shape(
+      *graph.add_input(), "planes",
+      {1, 1, std::int64_t{verify::kNumPairPlanes} * verify::kPairSide_px, verify::kPairSide_px});
   add_nodes(graph, network);
   add_shape(*graph.add_output(), "same", {1, 1});
   return model.SerializeAsString();
