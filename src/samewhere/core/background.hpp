@@ -2,9 +2,9 @@
 
 namespace samewhere::core {
 
-// From now on the calling thread, and those that it starts, give way to all others of this program
-// where there are fewer processors than work: for what nobody waits for. Does nothing where the
-// system has no priorities of threads, or refuses.
+// From now on the calling thread, and those that it starts, give way to all others of the machine
+// where there are fewer processors than work: for what is waited for late, if at all. Does nothing
+// where the system has no priorities of threads, or refuses.
 void work_in_background();
 
 }  // namespace samewhere::core

@@ -56,7 +56,7 @@ Graduation::Graduation(PoseGraph& graph, const Config& config)
 PoseGraphSummary Graduation::solve() {
   PoseGraphSummary summary;
   const State start = state();
-  if (!all_fit(summary) && !all_but_one_fit(start, summary)) ask_all(summary);
+  if (!all_fit(start, summary)) ask_all(summary);
   summary.weights = problem_.weights();
   summary.final_cost = 0.0;
   for (std::size_t i = 0; i < graph_.edges.size(); ++i)
@@ -80,16 +80,17 @@ void Graduation::go_on(int max_iterations, PoseGraphSummary& summary) {
   summary.num_iterations += problem_.solve(max_iterations).num_iterations;
 }
 
-// Whether the graph holds together without the loops in doubt, and with those of them that fit it
-// then.
-bool Graduation::all_fit(PoseGraphSummary& summary) {
+// Whether the graph holds together without the loops in doubt, all of it or all but one loop, and
+// with those in doubt that fit it then.
+bool Graduation::all_fit(const State& start, PoseGraphSummary& summary) {
   for (const std::size_t loop : loops_)
     if (graph_.edges[loop].is_doubted) problem_.weight(loop) = 0.0;
   summary = problem_.solve(config_.graph_iterations);
-  return believed_fit(kNobody) && fit_with_doubted(kNobody, summary);
+  return believed_fit(kNobody) ? fit_with_doubted(kNobody, summary)
+                               : all_but_one_fit(start, summary);
 }
 
-// The same without the one loop that is bent most: a map in which all was well before a loop lied
+// Without the one loop that is bent most: a map in which all was well before a loop lied
 // need not be asked in full, unless one in doubt speaks for the liar. If not, all is as it was.
 bool Graduation::all_but_one_fit(const State& start, PoseGraphSummary& summary) {
   const State before = state();

@@ -34,7 +34,7 @@ class Graduation {
 
   void ask_all(PoseGraphSummary& summary);
   void go_on(int max_iterations, PoseGraphSummary& summary);
-  bool all_fit(PoseGraphSummary& summary);
+  bool all_fit(const State& start, PoseGraphSummary& summary);
   bool all_but_one_fit(const State& start, PoseGraphSummary& summary);
   bool fit_with_doubted(std::size_t liar, PoseGraphSummary& summary);
   bool believed_fit(std::size_t liar) const;

@@ -32,7 +32,7 @@ std::unique_ptr<LoopLink> link_to(LoopClosing& stage, const Config& config,
       config.threads, config.map.loop_lag_keyframes, hooks.dawdle);
 }
 
-// One full bundle is under way at most. It takes seconds and tracking is to feel nothing of it.
+// One full bundle is under way at most. It takes seconds and tracking is to feel little of it.
 std::unique_ptr<BundleLink> link_to(Bundling& stage, const Config& config, const SlamHooks& hooks) {
   return link_to<BundleAll, scene::Edit>(
       [&stage, in_thread = config.threads](const BundleAll& message,
