@@ -23,6 +23,7 @@ struct Loss {
 const Loss kLosses[] = {{"least squares", optimize::LoopLoss::kLeastSquares},
                         {"Huber", optimize::LoopLoss::kHuber},
                         {"dynamic covariance scaling", optimize::LoopLoss::kDcs},
+                        {"gnc, as published", optimize::LoopLoss::kGncEach},
                         {"gnc (default)", optimize::LoopLoss::kGnc}};
 
 struct Findings {

@@ -5,7 +5,7 @@
 namespace samewhere::optimize {
 
 // How loop edges that lie are kept from bending the graph; see pose_graph.hpp.
-enum class LoopLoss { kLeastSquares, kHuber, kDcs, kGnc };
+enum class LoopLoss { kLeastSquares, kHuber, kDcs, kGnc, kGncEach };
 
 struct Config {
   int motion_rounds = 4;
@@ -51,8 +51,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
       "loop_loss", config.loop_loss,
       {.help = "what a loop edge may do to the graph: least_squares all, huber and dcs (dynamic "
                "covariance scaling) the less the worse it fits, gnc (graduated non-convexity) all "
-               "or nothing",
-       .choices = {"least_squares", "huber", "dcs", "gnc"}});
+               "or nothing, a stretch of loops as one claim; gnc_each the same as published, each "
+               "loop for itself",
+       .choices = {"least_squares", "huber", "dcs", "gnc", "gnc_each"}});
   visit(
       "loop_chi2", config.loop_chi2,
       {.help = "squared error of a loop edge, in variances, beyond which it is refused; 16.81: one "

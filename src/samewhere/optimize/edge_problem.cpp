@@ -216,6 +216,7 @@ ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge) const {
     case LoopLoss::kDcs:
       return new DynamicScaling(config_.loop_dcs);
     case LoopLoss::kGnc:
+    case LoopLoss::kGncEach:
       return new Weighted(weights_[edge]);
   }
   return nullptr;

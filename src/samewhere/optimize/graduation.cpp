@@ -57,6 +57,18 @@ PoseGraphSummary Graduation::solve() {
   PoseGraphSummary summary;
   const State start = state();
   if (!all_fit(start, summary)) ask_all(summary);
+  return weighed(std::move(summary));
+}
+
+PoseGraphSummary Graduation::solve_each() {
+  PoseGraphSummary summary = problem_.solve(config_.graph_iterations);
+  const double worst = worst_chi2();
+  if (worst > limit_) graduate(limit_ / (2.0 * worst - limit_), summary);
+  return weighed(std::move(summary));
+}
+
+// With the weights as they are now, and what is left with them.
+PoseGraphSummary Graduation::weighed(PoseGraphSummary summary) const {
   summary.weights = problem_.weights();
   summary.final_cost = 0.0;
   for (std::size_t i = 0; i < graph_.edges.size(); ++i)

@@ -17,6 +17,8 @@ class Graduation {
   Graduation(PoseGraph& graph, const Config& config);
 
   PoseGraphSummary solve();
+  // As published: nothing but the rounds.
+  PoseGraphSummary solve_each();
 
  private:
   struct State {
@@ -32,6 +34,7 @@ class Graduation {
     std::size_t end = 0;
   };
 
+  PoseGraphSummary weighed(PoseGraphSummary summary) const;
   void ask_all(PoseGraphSummary& summary);
   void go_on(int max_iterations, PoseGraphSummary& summary);
   bool all_fit(const State& start, PoseGraphSummary& summary);
