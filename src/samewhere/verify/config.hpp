@@ -27,7 +27,7 @@ struct Config {
   int wait_views = 20;
   double same_view_ratio = 0.15;
   double max_odometry_chi_square = 30.0;
-  double max_rival_chi_square = 100.0;
+  double max_rival_chi_square = 30.0;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
   bool measure_all = false;

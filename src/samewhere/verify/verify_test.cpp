@@ -329,9 +329,9 @@ TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
 TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
   core::Evidence evidence = good_evidence();
   evidence.rival = core::RivalEvidence{
-      .frame = core::FrameId(20), .apart_m = 1.8, .apart_rad = 0.01, .mahalanobis_squared = 99.0};
+      .frame = core::FrameId(20), .apart_m = 1.8, .apart_rad = 0.01, .mahalanobis_squared = 29.0};
   EXPECT_EQ(stage(evidence, {}), "accepted");
-  evidence.rival->mahalanobis_squared = 101.0;
+  evidence.rival->mahalanobis_squared = 31.0;
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
   EXPECT_EQ(core::stage_of(verdict), "rival");
