@@ -35,9 +35,9 @@ struct Closing {
 // A loop that the pose graph does not believe (optimize/) is kept as a doubted one, and asked again
 // with every new loop: of two that contradict each other, nobody knows which one lies until a third
 // speaks. So a new loop may be refused, which moves nothing, and an older one withdrawn with all
-// that it caused, in the same edit. Only loss kGnc refuses or withdraws. Throws ContractError if
-// the loop has no cause, or names keyframes that are not there or not live (between_holders()
-// answers with live ones).
+// that it caused, in the same edit. Only losses kGnc and kGncEach refuse or withdraw. Throws
+// ContractError if the loop has no cause, or names keyframes that are not there or not live
+// (between_holders() answers with live ones).
 Closing close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                    const optimize::Config& config);
 
