@@ -80,7 +80,7 @@ void Liar::tell_lie(const pipeline::FindLoops& question, pipeline::LoopAnswer& a
                                     .match_from_query = found,
                                     .information = information,
                                     .pairs = {}};
-    answer.loops.push_back(lie_->loop);
+    answer.loops.push_back({lie_->loop});
     before_ = question.map;
     return;
   }
@@ -92,8 +92,8 @@ void Liar::tell_truth(const pipeline::FindLoops& question, pipeline::LoopAnswer&
     return;
   const core::KeyframeId match = holder_of(question.map, lie_->loop.match).keyframe;
   answer.loops.push_back(
-      {question.keyframe, match, true_match_from_query(question.map, match, question.keyframe),
-       verify::loop_information(config_.verify), core::CandidateId(kTruthCause + since)});
+      {{question.keyframe, match, true_match_from_query(question.map, match, question.keyframe),
+        verify::loop_information(config_.verify), core::CandidateId(kTruthCause + since)}});
 }
 
 void Liar::see(const scene::MapVersion& map) {

@@ -56,17 +56,30 @@ std::string_view stage_of(const Verdict& verdict) {
   return "accepted";
 }
 
-std::string reason_of(const Verdict& verdict) {
-  if (const auto* rejection = std::get_if<Rejection>(&verdict)) return rejection->reason;
-  if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return ambiguous->reason;
-  const Evidence& evidence = evidence_of(verdict);
-  std::string reason = std::get<LoopClosure>(verdict).is_by_hand ? "accepted by hand: " : "";
+namespace {
+
+std::string reason_for(const LoopClosure& loop) {
+  const Evidence& evidence = loop.evidence;
+  std::string reason = loop.is_by_hand ? "accepted by hand: " : "";
   if (!evidence.geometry) return reason + fmt::format("similarity {:.3f}", evidence.similarity);
   reason += fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
                         evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
   if (evidence.sequence)
     reason += fmt::format("; {} views in a row go on to match", evidence.sequence->num_views);
+  if (loop.overruled.is_valid() && evidence.rival && evidence.rival->gain)
+    reason += fmt::format(
+        "; the loop of frame {} puts the camera {:.2f} m from here, but odometry speaks for this "
+        "one (twice the log of the likelihood ratio {:.1f})",
+        evidence.rival->frame.index(), evidence.rival->apart_m, *evidence.rival->gain);
   return reason;
+}
+
+}  // namespace
+
+std::string reason_of(const Verdict& verdict) {
+  if (const auto* rejection = std::get_if<Rejection>(&verdict)) return rejection->reason;
+  if (const auto* ambiguous = std::get_if<Ambiguous>(&verdict)) return ambiguous->reason;
+  return reason_for(std::get<LoopClosure>(verdict));
 }
 
 }  // namespace samewhere::core

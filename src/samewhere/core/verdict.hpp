@@ -52,6 +52,10 @@ struct RivalEvidence {
   double apart_m = 0.0;
   double apart_rad = 0.0;
   double mahalanobis_squared = 0.0;  // under the drift since that loop; 6 degrees of freedom
+  // Of the loops that contradict this one: the first, and twice the logarithm of how much likelier
+  // odometry from before it makes this one. Not measured if odometry cannot compare them.
+  CandidateId first_loop = {};
+  std::optional<double> gain = {};
 };
 
 // What the views around the query say: whether they go on to match the views around the match.
@@ -114,6 +118,8 @@ struct LoopClosure {
   Matrix6d information = Matrix6d::Identity();  // of match_from_query, order [m; rad]
   std::vector<FeaturePair> pairs;
   bool is_by_hand = false;  // a person said so, whatever the judge
+  // Valid: that loop and those after it put the camera elsewhere, and odometry speaks against them.
+  CandidateId overruled = {};
 };
 
 // The two views only look alike, or nothing proves that they do not.

@@ -38,8 +38,11 @@ struct Closing {
 // that it caused, in the same edit. Only losses kGnc and kGncEach refuse or withdraw. Throws
 // ContractError if the loop has no cause, or names keyframes that are not there or not live
 // (between_holders() answers with live ones).
+// `overruled`: a loop of the map against which odometry speaks for the new one. That and those that
+// were believed since, which may rest on it, do not vote: they stay if they fit the others, and
+// are withdrawn if they do not. Ignored if the map no longer believes that loop.
 Closing close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                   const optimize::Config& config);
+                   const optimize::Config& config, core::CandidateId overruled = {});
 
 // The edit that moves every keyframe to where odometry and the loops of the map fit best.
 scene::Edit solve_poses(const scene::MapVersion& map, const optimize::Config& config);

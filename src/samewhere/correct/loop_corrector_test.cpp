@@ -196,6 +196,65 @@ TEST(CloseLoop, AWrongLoopThatLaterOnesContradictIsWithdrawn) {
   EXPECT_GT(rms_error_m(walk, apply(walk.map, believed.edit)), 2.0 * rms_error_m(walk, never));
 }
 
+// The square with a true loop and `num_lies` that agree with each other and are believed.
+scene::MapVersion deceived(const Walk& walk, int num_lies) {
+  scene::MapVersion map = apply(walk.map, close_loop(walk.map, true_loop(walk, 24, 3), {}).edit);
+  for (int i = 0; i < num_lies; ++i) {
+    const Closing closing = close_loop(map, lie(walk, 34 + i, 4, 0.8), {});
+    EXPECT_FALSE(closing.refused) << "without believed lies this shows nothing";
+    map = apply(map, closing.edit);
+  }
+  return map;
+}
+
+TEST(CloseLoop, LoopsThatAreOverruledDoNotVote) {
+  const Walk walk = square_walk(0.002);
+  const scene::MapVersion map = deceived(walk, 3);
+  const scene::LoopEdge loop = true_loop(walk, 39, 1);
+  EXPECT_TRUE(close_loop(map, loop, {}).refused) << "one against three";
+
+  const Closing closing = close_loop(map, loop, {}, lie(walk, 34, 4, 0.8).cause);
+  EXPECT_FALSE(closing.refused);
+  EXPECT_EQ(closing.withdrawn.size(), 3U);
+  const scene::MapVersion after = apply(map, closing.edit);
+  EXPECT_EQ(after.loops.size(), 2U) << "the true one before them, and the new one";
+  EXPECT_EQ(after.doubted_loops.size(), 3U);
+  EXPECT_LT(worst_error_m(walk, after), 0.5 * worst_error_m(walk, map));
+}
+
+TEST(CloseLoop, WhatCameAfterAnOverruledLoopStaysIfItFits) {
+  const Walk walk = square_walk(0.002);
+  scene::MapVersion map = deceived(walk, 1);
+  scene::Edit edit;  // believed since, and true
+  edit.loops = {true_loop(walk, 36, 34)};
+  map = apply(map, edit);
+  const Closing closing = close_loop(map, true_loop(walk, 39, 1), {}, lie(walk, 34, 4, 0.8).cause);
+  ASSERT_EQ(closing.withdrawn.size(), 1U);
+  const scene::MapVersion after = apply(map, closing.edit);
+  EXPECT_TRUE(has_loop(after.loops, true_loop(walk, 36, 34).cause));
+  EXPECT_EQ(after.loops.size(), 3U);
+}
+
+TEST(CloseLoop, WhoOverrulesAndDoesNotFitTheOthersChangesNothing) {
+  const Walk walk = square_walk(0.002);
+  const scene::MapVersion map = deceived(walk, 1);
+  const Closing closing = close_loop(map, lie(walk, 25, 3, 2.0), {}, lie(walk, 34, 4, 0.8).cause);
+  EXPECT_TRUE(closing.refused && closing.withdrawn.empty() && closing.believed.empty());
+  const scene::MapVersion after = apply(map, closing.edit);
+  EXPECT_EQ(after.loops.size(), map.loops.size());
+  EXPECT_LT(std::abs(worst_error_m(walk, after) - worst_error_m(walk, map)), 1e-12);
+}
+
+TEST(CloseLoop, ALoopThatTheMapNoLongerBelievesCannotBeOverruled) {
+  const Walk walk = square_walk(0.002);
+  const scene::LoopEdge loop = true_loop(walk, 40, 0);
+  const Closing plain = close_loop(walk.map, loop, {});
+  const Closing closing = close_loop(walk.map, loop, {}, core::CandidateId(12345));
+  EXPECT_EQ(closing.believed.size(), 1U);
+  EXPECT_EQ(rms_error_m(walk, apply(walk.map, closing.edit)),
+            rms_error_m(walk, apply(walk.map, plain.edit)));
+}
+
 TEST(WithdrawLoop, AnyLoopCanBeTakenBackWhateverCameAfterIt) {
   const Walk walk = square_walk(0.01);
   const scene::LoopEdge first = true_loop(walk, 38, 2);

@@ -9,8 +9,8 @@
 namespace samewhere::pipeline {
 
 Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                     const Config& config) {
-  correct::Closing closing = correct::close_loop(map, loop, config.optimize);
+                     const Config& config, core::CandidateId overruled) {
+  correct::Closing closing = correct::close_loop(map, loop, config.optimize, overruled);
   scene::MapVersion corrected = apply(map, closing.edit);
   if (!closing.withdrawn.empty()) corrected = with_places_parted(map, std::move(corrected), config);
   for (const auto& believed : closing.believed)

@@ -16,9 +16,9 @@ struct Correction {
 
 // The map with one more loop: poses are solved (correct::close_loop), places that loops withdrawn
 // for its sake had made one are parted, and what both ends of those that are believed from now on
-// show is fused. A loop that is refused moves nothing.
+// show is fused. A loop that is refused moves nothing. `overruled`: see close_loop.
 Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                     const Config& config);
+                     const Config& config, core::CandidateId overruled = {});
 
 // Why a loop that the graph of loops does not believe is none.
 std::string bent_by(const correct::BentLoop& bent, const Config& config);

@@ -129,7 +129,7 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   for (const auto& row : answer.rows) {
     const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
     if (loop != nullptr && loop->match_from_query)
-      answer.loops.push_back(places.edge_of(row, *loop));
+      answer.loops.push_back({places.edge_of(row, *loop), loop->overruled});
   }
   answer.descriptor = detector_.descriptor(detector_.num_descriptors() - 1);
   return answer;

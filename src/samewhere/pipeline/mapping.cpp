@@ -128,11 +128,11 @@ void Mapping::note(const LoopAnswer& answer) {
 }
 
 // The past must be corrected, and what both places show is one.
-bool Mapping::correct(const scene::LoopEdge& heard) {
+bool Mapping::correct(const AcceptedLoop& heard) {
   const core::ScopedTimer timer(timings_, "correct");
-  const auto loop = correct::between_holders(map_, heard);
+  const auto loop = correct::between_holders(map_, heard.edge);
   if (!loop) return false;  // both hang on one: nothing to correct
-  const Correction correction = with_loop(map_, *loop, config_);
+  const Correction correction = with_loop(map_, *loop, config_, heard.overruled);
   const correct::Closing& closing = correction.closing;
   think_again(closing, *loop);
   map_ = correction.map;

@@ -48,7 +48,7 @@ class Mapping {
   // that were one were parted.
   bool hear_loops(int max_unheard);
   void note(const LoopAnswer& answer);
-  bool correct(const scene::LoopEdge& heard);
+  bool correct(const AcceptedLoop& heard);
   // What the pose graph makes of the judge's verdicts goes into the ledger, too.
   void think_again(const correct::Closing& closing, const scene::LoopEdge& newest);
   void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);

@@ -82,8 +82,15 @@ struct FindLoops {
 using ToLoopClosing = std::variant<FindLoops, FindPlace>;
 
 // --- Loop closing to mapping.
+
+// Its keyframes may be culled by now.
+struct AcceptedLoop {
+  scene::LoopEdge edge;
+  core::CandidateId overruled = {};  // valid: see core::LoopClosure
+};
+
 struct LoopAnswer {
-  std::vector<scene::LoopEdge> loops;          // accepted; their keyframes may be culled by now
+  std::vector<AcceptedLoop> loops;
   std::vector<Place> places;                   // to FindPlace
   std::optional<core::Descriptor> descriptor;  // of a view that is remembered from now on
   core::Ledger rows;                           // of all candidates that were judged

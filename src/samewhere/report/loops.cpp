@@ -45,6 +45,10 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "rival_apart_m", evidence.rival->apart_m);
     add_score(scores, "rival_apart_rad", evidence.rival->apart_rad);
     add_score(scores, "rival_mahalanobis_squared", evidence.rival->mahalanobis_squared);
+    if (evidence.rival->gain) {
+      scores["rival_first_loop"] = evidence.rival->first_loop.index();
+      add_score(scores, "rival_gain", *evidence.rival->gain);
+    }
   }
   if (evidence.sequence) {
     scores["query_view"] = evidence.sequence->query_view;
@@ -83,6 +87,7 @@ Json entry_of(const core::LedgerRow& row) {
   if (row.candidate.is_lost) entry["is_lost"] = true;
   const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
   if (loop != nullptr && loop->is_by_hand) entry["is_by_hand"] = true;
+  if (loop != nullptr && loop->overruled.is_valid()) entry["overruled"] = loop->overruled.index();
   return entry;
 }
 

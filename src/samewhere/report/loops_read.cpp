@@ -36,6 +36,7 @@ class Entry {
       loop.match_from_query = pose();
       loop.scale_is_free = scores_.contains("scale");
       loop.is_by_hand = json_.value("is_by_hand", false);
+      if (json_.contains("overruled")) loop.overruled = candidate(json_.at("overruled"));
       row_.verdict = loop;
     } else if (verdict == "AMBIGUOUS") {
       row_.verdict = core::Ambiguous{row_.candidate.id, evidence, stage(), reason};
@@ -49,6 +50,11 @@ class Entry {
   core::FrameId frame(const char* name) const {
     return core::FrameId(json_.at(name).get<std::uint64_t>(),
                          json_.value(std::string(name) + "_session", std::uint16_t{0}));
+  }
+
+  // Of this query's session.
+  core::CandidateId candidate(const Json& index) const {
+    return core::CandidateId(index.get<std::uint64_t>(), row_.candidate.query.session());
   }
 
   std::optional<double> score(const char* name) const {
@@ -82,13 +88,21 @@ class Entry {
     if (const auto squared = score("mahalanobis_squared"))
       evidence.odometry = {score("correction_m").value_or(0.0),
                            score("correction_rad").value_or(0.0), *squared};
-    if (scores_.contains("rival"))
-      evidence.rival = {core::FrameId(scores_.at("rival").get<std::uint64_t>()),
-                        score("rival_apart_m").value_or(0.0),
-                        score("rival_apart_rad").value_or(0.0),
-                        score("rival_mahalanobis_squared").value_or(0.0)};
+    if (scores_.contains("rival")) evidence.rival = rival();
     if (scores_.contains("query_view")) evidence.sequence = sequence();
     return evidence;
+  }
+
+  core::RivalEvidence rival() const {
+    core::RivalEvidence rival{
+        .frame = core::FrameId(scores_.at("rival").get<std::uint64_t>()),
+        .apart_m = score("rival_apart_m").value_or(0.0),
+        .apart_rad = score("rival_apart_rad").value_or(0.0),
+        .mahalanobis_squared = score("rival_mahalanobis_squared").value_or(0.0),
+        .gain = score("rival_gain")};
+    if (scores_.contains("rival_first_loop"))
+      rival.first_loop = candidate(scores_.at("rival_first_loop"));
+    return rival;
   }
 
   core::SequenceEvidence sequence() const {

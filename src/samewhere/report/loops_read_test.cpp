@@ -102,6 +102,28 @@ TEST_F(LoopsRead, ARivalIsReadBack) {
   EXPECT_EQ(core::evidence_of(found.at(0).verdict).rival->mahalanobis_squared, 250.0);
 }
 
+TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithWhatSpokeForIt) {
+  core::Evidence torn = evidence(0.8, 100, 50);
+  torn.rival = core::RivalEvidence{.frame = core::FrameId(3),
+                                   .apart_m = 1.8,
+                                   .apart_rad = 0.02,
+                                   .mahalanobis_squared = 250.0,
+                                   .first_loop = core::CandidateId(4),
+                                   .gain = 9.5};
+  const core::Candidate about = candidate(0, 9, 2, 0.8);
+  core::LoopClosure loop{.candidate = about.id, .evidence = torn};
+  loop.overruled = core::CandidateId(4);
+  const std::string text = loops_json({{about, loop}});
+  const core::Ledger found = read(text);
+  EXPECT_EQ(loops_json(found), text);
+  const auto& read_back = std::get<core::LoopClosure>(found.at(0).verdict);
+  EXPECT_EQ(read_back.overruled, core::CandidateId(4));
+  EXPECT_EQ(read_back.evidence.rival->first_loop, core::CandidateId(4));
+  EXPECT_EQ(read_back.evidence.rival->gain, 9.5);
+  EXPECT_THAT(core::reason_of(found.at(0).verdict),
+              HasSubstr("the loop of frame 3 puts the camera 1.80 m from here"));
+}
+
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})

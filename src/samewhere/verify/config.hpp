@@ -26,8 +26,9 @@ struct Config {
   int max_view_gap = 3;
   int wait_views = 20;
   double same_view_ratio = 0.15;
-  double max_odometry_chi_square = 30.0;
+  double max_odometry_chi_square = 16.81;
   double max_rival_chi_square = 30.0;
+  double min_rival_gain = 6.0;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
   bool measure_all = false;
@@ -104,6 +105,12 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
         {.help = "the same from where the last loop has put the camera, under the drift since then "
                  "alone: beyond, two places explain the view",
          .min = 1.0,
+         .max = 1e9});
+  visit("min_rival_gain", config.min_rival_gain,
+        {.help = "such a candidate is a loop all the same, and those before that contradict it are "
+                 "none, if odometry makes it so much likelier than them: twice the logarithm of "
+                 "the ratio",
+         .min = 0.0,
          .max = 1e9});
   visit("loop_sigma_m", config.loop_sigma_m,
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});

@@ -82,12 +82,19 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
                   evidence.odometry->mahalanobis_squared, config.max_odometry_chi_square));
 }
 
+// Odometry can tell.
+bool overrules(const core::RivalEvidence& rival, const Config& config) {
+  return rival.mahalanobis_squared > config.max_rival_chi_square && rival.gain &&
+         *rival.gain >= config.min_rival_gain;
+}
+
 // Two places that explain the view: nobody can tell which.
 std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evidence& evidence,
                                          const Config& config) {
   if (!evidence.rival) return std::nullopt;
   const core::RivalEvidence& rival = *evidence.rival;
-  if (rival.mahalanobis_squared <= config.max_rival_chi_square) return std::nullopt;
+  if (rival.mahalanobis_squared <= config.max_rival_chi_square || overrules(rival, config))
+    return std::nullopt;
   return core::Ambiguous{
       candidate.id, evidence, Refusal::kRival,
       fmt::format(
@@ -171,6 +178,8 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
     const auto undecided = check_other_views(candidate, evidence, config);
     if (undecided && config.require_geometry) return *undecided;
     if (!undecided) loop.match_from_query = evidence.geometry->match_from_query;
+    if (!undecided && evidence.rival && overrules(*evidence.rival, config))
+      loop.overruled = evidence.rival->first_loop;
   }
   // with depth it is 1, not about 1
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;

@@ -1,7 +1,12 @@
 #include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
 
 #include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/measure_rival.hpp>
+#include <samewhere/verify/odometry_chain.hpp>
 
 namespace samewhere::verify {
 namespace {
@@ -31,6 +36,85 @@ bool is_comparable(const scene::MapVersion& map, const scene::LoopEdge& claim,
   return origin == origin_of(map, loop.match) || origin == origin_of(map, loop.query);
 }
 
+// How well a claim goes with a chain of odometry: its error has a normal distribution.
+struct Fit {
+  double chi2 = 0.0;
+  double log_det = 0.0;  // of the covariance
+};
+
+// Minus twice the logarithm of how likely the claim is, but for a constant.
+double surprise(const Fit& fit) { return fit.chi2 + fit.log_det; }
+
+class Odometry {
+ public:
+  Odometry(const scene::MapVersion& map, double scale_sigma, const Config& config)
+      : map_(map), scale_sigma_(scale_sigma), config_(config) {}
+
+  // The chain leads from `begin`, which the map places relative to the match, to the query.
+  Fit fit(const scene::LoopEdge& claim, core::KeyframeId begin, const OdometryChain& chain) const {
+    const core::Rigid3 claimed = inverse(world_from_body(map_, begin)) *
+                                 world_from_body(map_, claim.match) * claim.match_from_query;
+    const core::Vector6d error = difference(chain.begin_from_end.a_from_b, claimed);
+    const Eigen::LDLT<core::Matrix6d> covariance(
+        covariance_with_loop(map_, chain, begin, claim.query, scale_sigma_, config_));
+    return {error.dot(covariance.solve(error)), covariance.vectorD().array().log().sum()};
+  }
+
+  std::optional<Fit> fit(const scene::LoopEdge& claim, core::KeyframeId begin) const {
+    const auto chain = odometry_between(map_, begin, claim.query);
+    if (!chain) return std::nullopt;
+    return fit(claim, begin, *chain);
+  }
+
+ private:
+  const scene::MapVersion& map_;
+  double scale_sigma_;
+  const Config& config_;
+};
+
+// The loops on a claim's path that contradict it, up to the youngest that does not.
+struct Contradiction {
+  const scene::LoopEdge* first = nullptr;
+  // What odometry may be held against without leaning on any of them: where the youngest loop that
+  // goes with the claim has put the camera; none before the first of all loops.
+  std::optional<core::KeyframeId> base;
+};
+
+Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                               const Odometry& odometry, const Config& config) {
+  std::map<core::KeyframeId, const scene::LoopEdge*> loop_of;
+  for (const auto& loop : map.loops) loop_of.try_emplace(loop.query, &loop);
+  Contradiction found;
+  ClimbingChain path(claim.query);
+  do {
+    const auto loop = loop_of.find(path.begin());
+    if (loop == loop_of.end()) continue;
+    if (odometry.fit(claim, path.begin(), path.chain()).chi2 <= config.max_rival_chi_square) {
+      found.base = path.begin();
+      return found;
+    }
+    found.first = loop->second;
+  } while (path.begin() > claim.match && path.climb(map));
+  return found;
+}
+
+// Odometry that leans on none of the loops that contradict the claim, held against it and against
+// the first of them.
+void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                  const Odometry& odometry, const Config& config, core::RivalEvidence& rival) {
+  const Contradiction found = contradiction_of(map, claim, odometry, config);
+  if (found.first == nullptr || claim.match >= found.first->query) return;
+  const auto fit_of = [&](const scene::LoopEdge& loop) {
+    const bool has_base = found.base && loop.match < *found.base;
+    return odometry.fit(loop, has_base ? *found.base : loop.match);
+  };
+  const auto of_claim = fit_of(claim);
+  const auto of_first = fit_of(*found.first);
+  if (!of_claim || !of_first) return;
+  rival.first_loop = found.first->cause;
+  rival.gain = surprise(*of_first) - surprise(*of_claim);
+}
+
 }  // namespace
 
 std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
@@ -43,10 +127,13 @@ std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
   since_loop.match_from_query = inverse(world_from_body(map, loop->query)) *
                                 world_from_body(map, claim.match) * claim.match_from_query;
   const core::OdometryEvidence found = measure_odometry(map, since_loop, scale_sigma, config);
-  return core::RivalEvidence{.frame = map.at(loop->match).view.frame,
-                             .apart_m = found.correction_m,
-                             .apart_rad = found.correction_rad,
-                             .mahalanobis_squared = found.mahalanobis_squared};
+  core::RivalEvidence rival{.frame = map.at(loop->match).view.frame,
+                            .apart_m = found.correction_m,
+                            .apart_rad = found.correction_rad,
+                            .mahalanobis_squared = found.mahalanobis_squared};
+  if (rival.mahalanobis_squared > config.max_rival_chi_square)
+    measure_gain(map, claim, Odometry(map, scale_sigma, config), config, rival);
+  return rival;
 }
 
 }  // namespace samewhere::verify

@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -324,6 +325,66 @@ TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
   EXPECT_GT(after(2, 1.8).mahalanobis_squared, Config{}.max_rival_chi_square);
   EXPECT_LT(after(2, 0.05).mahalanobis_squared, 1.0) << "one place, and a better pose";
   EXPECT_LT(after(55, 1.8).mahalanobis_squared, after(2, 1.8).mahalanobis_squared / 5.0);
+}
+
+// A corridor in which loops have moved keyframes from the first of them on sideways by so much.
+scene::MapVersion corridor_moved_by(const std::vector<int>& queries, double metres) {
+  scene::MapVersion map = corridor(80);
+  scene::Edit edit;
+  for (const int query : queries) {
+    edit.loops.push_back(sideways(map, query, metres));
+    edit.loops.back().cause = core::CandidateId(static_cast<std::uint64_t>(query));
+  }
+  for (std::size_t i = static_cast<std::size_t>(queries.front()); i < map.keyframes.size(); ++i)
+    edit.pose_changes.push_back(
+        {core::KeyframeId(i), {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}}});
+  return apply(map, edit);
+}
+
+TEST(MeasureRival, OdometrySpeaksForWhoSaysWhatItSaid) {
+  const scene::MapVersion map = corridor_moved_by({20, 22}, 4.0);
+  const auto back = measure_rival(map, sideways(map, 24, -4.0), 0.01, {});
+  ASSERT_TRUE(back && back->gain);
+  EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second only says what the first did";
+  EXPECT_GT(*back->gain, 9.0);
+  const auto further = measure_rival(map, sideways(map, 24, 4.0), 0.01, {});
+  ASSERT_TRUE(further && further->gain);
+  EXPECT_LT(*further->gain, -9.0);
+}
+
+TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
+  scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
+  const double without = *measure_rival(map, sideways(map, 24, -1.8), 0.01, {})->gain;
+  scene::Edit edit;
+  edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
+  map = apply(map, edit);
+  const auto with = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
+  ASSERT_TRUE(with && with->gain);
+  EXPECT_EQ(with->first_loop, core::CandidateId(20));
+  EXPECT_GT(*with->gain, 3.0 * without) << "two keyframes leave the lie less room than twenty";
+}
+
+TEST(MeasureRival, WhoGoesWithTheLastLoopOrMatchesWhatCameAfterItComparesNothing) {
+  const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
+  EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), 0.01, {})->gain);
+  core::Rigid3 beside{Eigen::Quaterniond::Identity(), {1.8, 0.0, 2.0}};
+  EXPECT_FALSE(measure_rival(map, claim(25, 23, beside), 0.01, {})->gain);
+}
+
+TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
+  core::Evidence evidence = good_evidence();
+  evidence.rival = core::RivalEvidence{.frame = core::FrameId(20),
+                                       .mahalanobis_squared = 31.0,
+                                       .first_loop = core::CandidateId(7),
+                                       .gain = Config{}.min_rival_gain - 0.1};
+  EXPECT_EQ(stage(evidence, {}), "rival");
+  evidence.rival->gain = Config{}.min_rival_gain + 0.1;
+  const auto verdict = decide(candidate(100, 0), evidence, {}, {});
+  ASSERT_TRUE(core::is_loop(verdict));
+  EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));
+  evidence.rival->mahalanobis_squared = 29.0;
+  const auto agreeing = decide(candidate(100, 0), evidence, {}, {});
+  EXPECT_FALSE(std::get<core::LoopClosure>(agreeing).overruled.is_valid()) << "nothing contradicts";
 }
 
 TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
