@@ -13,13 +13,28 @@ cv::Mat orb_of(const features::View& view) {
   return view.features ? view.features->descriptors : cv::Mat();
 }
 
+verify::MeasureSettings settings_of(const Config& config) {
+  return {config.verify, config.features, config.optimize, static_cast<std::uint64_t>(config.seed)};
+}
+
+// How a view is judged whose place nobody knows.
+verify::MeasureSettings settings_of_lost(const Config& config) {
+  verify::MeasureSettings settings = settings_of(config);
+  settings.verify.min_views = 1;
+  // what was refused early is no place
+  settings.verify.measure_all = false;
+  // whoever tracks the view among the place's points finds it
+  settings.verify.require_pose = false;
+  return settings;
+}
+
 }  // namespace
 
 LoopDetector::LoopDetector(const Config& config)
     : describer_(describe::make_describer(config.describe)),
       retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)),
-      settings_{config.verify, config.features, config.optimize,
-                static_cast<std::uint64_t>(config.seed)},
+      settings_(settings_of(config)),
+      lost_settings_(settings_of_lost(config)),
       waiting_(config.verify),
       numbered_(config.features, config.verify.same_view_ratio),
       window_frames_(static_cast<std::uint64_t>(config.retrieve.window_frames)) {}
@@ -50,15 +65,11 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
   const core::Descriptor descriptor = describe(view.frame, image);
   const MapKnowledge nothing{
       [](const core::Candidate&, const core::Sim3&) { return std::nullopt; }};
-  verify::Config looks_alone = settings_.verify;
-  looks_alone.min_views = 1;
-  looks_alone.measure_all = false;   // what was refused early is no place
-  looks_alone.require_pose = false;  // whoever tracks the view among the place's points finds it
   std::vector<core::LedgerRow> rows;
   for (core::Candidate candidate :
        retrieve::compare(descriptor, retriever_.search_places(descriptor, orb_of(view)))) {
     candidate.is_lost = true;
-    rows.push_back(judged(candidate, view, nothing, looks_alone));
+    rows.push_back(judged(candidate, view, nothing, lost_settings_));
   }
   return rows;
 }
@@ -88,12 +99,12 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
   if (may_wait) numbered_.add(view, descriptor);
   std::vector<core::LedgerRow> rows;
   for (const core::Candidate& candidate : candidates) {
-    rows.push_back(judged(candidate, view, map, settings_.verify));
+    rows.push_back(judged(candidate, view, map, settings_));
     wait_or_pause(rows.back());
   }
   if (!may_wait) return rows;
   for (const core::Candidate& candidate : foretold(descriptor)) {
-    rows.push_back(judged(candidate, views_.at(candidate.query), map, settings_.verify));
+    rows.push_back(judged(candidate, views_.at(candidate.query), map, settings_));
     wait_or_pause(rows.back());
   }
   auto settled = waiting_.settle(numbered_.number_of(view.frame));
@@ -130,18 +141,20 @@ std::vector<core::Candidate> LoopDetector::foretold(const core::Descriptor& desc
 }
 
 core::LedgerRow LoopDetector::judged(core::Candidate candidate, const features::View& view,
-                                     const MapKnowledge& map, const verify::Config& config) {
+                                     const MapKnowledge& map,
+                                     const verify::MeasureSettings& settings) {
   candidate.id = core::CandidateId(num_candidates_++, view.frame.session());
-  return {candidate, verdict_on(candidate, view, map, config)};
+  return {candidate, verdict_on(candidate, view, map, settings)};
 }
 
 core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const features::View& view,
                                        const MapKnowledge& map,
-                                       const verify::Config& config) const {
+                                       const verify::MeasureSettings& settings) const {
+  const verify::Config& config = settings.verify;
   core::Evidence evidence{.similarity = candidate.similarity};
   auto refused = verify::refuse_early(candidate, evidence, history_, config);
   if (refused && !config.measure_all) return *refused;
-  evidence.geometry = measure_geometry(candidate, view, map.view_of);
+  evidence.geometry = measure_geometry(candidate, view, map.view_of, settings);
   if (needs_sequence(*evidence.geometry, config))
     evidence.sequence = {.query_view = numbered_.number_of(candidate.query),
                          .match_view = numbered_.number_of(candidate.match)};
@@ -154,10 +167,10 @@ core::Verdict LoopDetector::verdict_on(const core::Candidate& candidate, const f
 
 core::GeometryEvidence LoopDetector::measure_geometry(const core::Candidate& candidate,
                                                       const features::View& view,
-                                                      const ViewOf& view_of) const {
+                                                      const ViewOf& view_of,
+                                                      verify::MeasureSettings settings) const {
   if (!view_of)
-    return verify::measure_geometry(candidate, view, views_.at(candidate.match), settings_);
-  verify::MeasureSettings settings = settings_;
+    return verify::measure_geometry(candidate, view, views_.at(candidate.match), settings);
   settings.has_one_scale = false;
   return verify::measure_geometry(candidate, view_of(candidate.query), view_of(candidate.match),
                                   settings);

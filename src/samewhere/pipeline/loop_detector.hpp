@@ -88,18 +88,20 @@ class LoopDetector {
   // Candidates that no search found: what the view should show if a sequence goes on.
   std::vector<core::Candidate> foretold(const core::Descriptor& descriptor);
   core::LedgerRow judged(core::Candidate candidate, const features::View& view,
-                         const MapKnowledge& map, const verify::Config& config);
+                         const MapKnowledge& map, const verify::MeasureSettings& settings);
   core::Verdict verdict_on(const core::Candidate& candidate, const features::View& view,
-                           const MapKnowledge& map, const verify::Config& config) const;
+                           const MapKnowledge& map, const verify::MeasureSettings& settings) const;
 
   core::GeometryEvidence measure_geometry(const core::Candidate& candidate,
-                                          const features::View& view, const ViewOf& view_of) const;
+                                          const features::View& view, const ViewOf& view_of,
+                                          verify::MeasureSettings settings) const;
 
   std::unique_ptr<describe::Describer> describer_;  // of describe()
 
   retrieve::Retriever retriever_;  // of search()
 
-  verify::MeasureSettings settings_;  // from here on of judge()
+  verify::MeasureSettings settings_;       // from here on of judge()
+  verify::MeasureSettings lost_settings_;  // of recognise()
   verify::History history_;
   verify::Waiting waiting_;
   std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where sequences are asked for
