@@ -44,6 +44,23 @@ TEST_F(LookAlikeRooms, TrueLoopsThatComeLaterPartThemAgain) {
   EXPECT_LT(rmse_m(believed), 1.15 * rmse_m(never));
 }
 
+TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoLiesPartsThem) {
+  MapVersion believed = closed(map_, lie());
+  believed = closed(believed, loop(2 * kPerRoom - 2, kPerRoom - 2, {}, core::CandidateId(8)));
+  ASSERT_EQ(believed.loops.size(), 2U);
+  believed = with_next(believed);
+  const auto spoken = correct::between_holders(believed, true_loop(12, 1)).value();
+  EXPECT_TRUE(with_loop(believed, spoken, config_).closing.refused) << "one against two";
+
+  const Correction correction = with_loop(believed, spoken, config_, kLie);
+  EXPECT_EQ(correction.closing.withdrawn.size(), 2U);
+  ASSERT_EQ(correction.map.loops.size(), 1U);
+  EXPECT_EQ(correction.map.doubted_loops.size(), 2U);
+  EXPECT_EQ(survivors(correction.map), survivors(map_));
+  EXPECT_EQ(num_seen_in_both_rooms(correction.map), 0);
+  EXPECT_LT(rmse_m(correction.map), 0.1);
+}
+
 // What was culled while the lie was believed hung on the other room.
 TEST_F(LookAlikeRooms, TheyArePartedThoughKeyframesWentMeanwhile) {
   config_.map.redundant_ratio = Config{}.map.redundant_ratio;

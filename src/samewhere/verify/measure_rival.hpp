@@ -14,7 +14,8 @@ namespace samewhere::verify {
 // rival's. How well the map knows the way between both places does not count: a claim that only an
 // error of that way could save is a second place for one view. Nothing where no loop came before:
 // the first look-alike has no rival; nor where the match is of a part of the map that nothing joins
-// with it.
+// with it. Beyond max_rival_chi_square, also how much likelier odometry makes the claim than the
+// first of the loops on its path that contradict it (docs/decisions/023).
 std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
                                                  const scene::LoopEdge& claim, double scale_sigma,
                                                  const Config& config);
