@@ -79,4 +79,33 @@ inline View test_view(const TestWorld& world, int frame, const core::Rigid3& wor
           features};
 }
 
+// The view as another day may show it: each feature looks 34 bits unlike what it did, and one
+// elsewhere in the picture 38, so that the better one is hardly clear.
+inline View with_near_doubles(const View& view) {
+  const Features& seen = *view.features;
+  auto features = std::make_shared<Features>(seen);
+  features->descriptors = seen.descriptors.clone();
+  const auto flip_bits = [](cv::Mat descriptor, int count) {
+    for (int bit = 0; bit < count; ++bit)
+      descriptor.ptr()[bit / 8] ^= static_cast<unsigned char>(1 << (bit % 8));
+  };
+  for (int i = 0; i < seen.size(); ++i) {
+    const auto elsewhere = static_cast<std::size_t>((i + seen.size() / 2) % seen.size());
+    cv::Mat unlike = seen.descriptors.row(i).clone();
+    flip_bits(unlike, 38);
+    flip_bits(features->descriptors.row(i), 34);
+    features->raw_px.push_back(seen.raw_px[elsewhere]);
+    features->undistorted_px.push_back(seen.undistorted_px[elsewhere]);
+    features->depth_m.push_back(seen.depth_m[elsewhere]);
+    features->right_x_px.push_back(seen.right_x_px[elsewhere]);
+    features->octave.push_back(seen.octave[elsewhere]);
+    features->angle_rad.push_back(seen.angle_rad[elsewhere]);
+    features->rgb.push_back(seen.rgb[elsewhere]);
+    features->descriptors.push_back(unlike);
+  }
+  View doubled = view;
+  doubled.features = features;
+  return doubled;
+}
+
 }  // namespace samewhere::features

@@ -7,6 +7,12 @@
 
 namespace samewhere::pipeline {
 
+features::Config features_of_lost(const Config& config, bool is_without_depth) {
+  features::Config features = config.features;
+  if (is_without_depth) features.max_ratio = config.track.lost.max_ratio_without_depth;
+  return features;
+}
+
 std::vector<std::string> profile_names() { return {"default", "paper"}; }
 
 Config profile(const std::string& name) {

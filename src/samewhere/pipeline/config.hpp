@@ -57,6 +57,10 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("dense", config.dense, {.help = "Cloud, grid and octree of a finished run"});
 }
 
+// How features are matched where who is lost looks for his place: that is only proposed, and held
+// against others. A loop, which bends the map, is judged by config.features as it is.
+features::Config features_of_lost(const Config& config, bool is_without_depth);
+
 // Names of the built-in profiles: "default", "paper".
 std::vector<std::string> profile_names();
 

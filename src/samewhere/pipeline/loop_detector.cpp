@@ -18,8 +18,9 @@ verify::MeasureSettings settings_of(const Config& config) {
 }
 
 // How a view is judged whose place nobody knows.
-verify::MeasureSettings settings_of_lost(const Config& config) {
+verify::MeasureSettings settings_of_lost(const Config& config, bool is_without_depth) {
   verify::MeasureSettings settings = settings_of(config);
+  settings.features = features_of_lost(config, is_without_depth);
   settings.verify.min_views = 1;
   // what was refused early is no place
   settings.verify.measure_all = false;
@@ -34,7 +35,8 @@ LoopDetector::LoopDetector(const Config& config)
     : describer_(describe::make_describer(config.describe)),
       retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)),
       settings_(settings_of(config)),
-      lost_settings_(settings_of_lost(config)),
+      lost_settings_(settings_of_lost(config, false)),
+      lost_settings_without_depth_(settings_of_lost(config, true)),
       waiting_(config.verify),
       numbered_(config.features, config.verify.same_view_ratio),
       window_frames_(static_cast<std::uint64_t>(config.retrieve.window_frames)) {}
@@ -65,11 +67,12 @@ std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
   const core::Descriptor descriptor = describe(view.frame, image);
   const MapKnowledge nothing{
       [](const core::Candidate&, const core::Sim3&) { return std::nullopt; }};
+  const auto& settings = has_depth(view) ? lost_settings_ : lost_settings_without_depth_;
   std::vector<core::LedgerRow> rows;
   for (core::Candidate candidate :
        retrieve::compare(descriptor, retriever_.search_places(descriptor, orb_of(view)))) {
     candidate.is_lost = true;
-    rows.push_back(judged(candidate, view, nothing, lost_settings_));
+    rows.push_back(judged(candidate, view, nothing, settings));
   }
   return rows;
 }

@@ -102,6 +102,7 @@ class LoopDetector {
 
   verify::MeasureSettings settings_;       // from here on of judge()
   verify::MeasureSettings lost_settings_;  // of recognise()
+  verify::MeasureSettings lost_settings_without_depth_;
   verify::History history_;
   verify::Waiting waiting_;
   std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where sequences are asked for

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
+#include <samewhere/features/test_world.hpp>
 #include <samewhere/pipeline/loop_detector.hpp>
 
 namespace samewhere::pipeline {
@@ -52,6 +54,35 @@ TEST(LoopDetector, TheBestOfAQueryIsWhatTheViewItselfShowsMostOf) {
   };
   const std::vector<core::LedgerRow> rows = {accepted(27, 176, 3852), accepted(31, 28, 4235)};
   EXPECT_EQ(best_of_query(rows, {})->candidate.match, core::FrameId(27));
+}
+
+int num_matches(const core::LedgerRow& row) {
+  return core::evidence_of(row.verdict).geometry->num_matches;
+}
+
+TEST(LoopDetector, WithoutDepthWhoIsLostMayMatchWhatIsNotClearEnoughForALoop) {
+  Config config;
+  config.retrieve.window_frames = 0;
+  config.verify.measure_all = true;
+  LoopDetector detector(config);
+  cv::Mat picture(480, 640, CV_8UC3);
+  cv::RNG(5).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  const features::View view = features::test_view(features::test_world(5), 0, {}, 0.3, false);
+  features::View later = features::with_near_doubles(view);
+  later.frame = core::FrameId(20);
+  detector.remember(detector.describe(view.frame, picture), view);
+  core::Timings timings;
+  const auto places = detector.recognise(picture, later, timings);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_GT(num_matches(places[0]), 100);
+  const auto is_connected = [](core::FrameId /*match*/) { return false; };
+  const auto no_odometry = [](const core::Candidate& /*candidate*/,
+                              const core::Sim3& /*match_from_query*/) {
+    return std::optional<core::OdometryEvidence>();
+  };
+  const auto loops = detector.look(picture, later, {no_odometry}, is_connected, timings);
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_EQ(num_matches(loops[0]), 0);
 }
 
 TEST(LoopDetector, ThePublishedOneAcceptsTheBestMatchOfAViewAndThenPauses) {

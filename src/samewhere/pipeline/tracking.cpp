@@ -38,7 +38,9 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
     : config_(config),
       tracker_({config.track, config.features, config.optimize,
                 static_cast<std::uint64_t>(config.seed)}),
-      place_finder_(config_, tracker_),
+      lost_tracker_({config.track, features_of_lost(config, depth_from == DepthFrom::kMotion),
+                     config.optimize, static_cast<std::uint64_t>(config.seed)}),
+      place_finder_(config_, lost_tracker_),
       mapping_(mapping) {
   if (depth_from == DepthFrom::kMotion) {
     starter_.emplace(track::StartSettings{config.track.start, config.features,

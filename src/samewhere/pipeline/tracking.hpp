@@ -101,6 +101,7 @@ class Tracking {
   Config config_;
   core::Timings timings_;
   track::Tracker tracker_;
+  track::Tracker lost_tracker_;
   PlaceFinder place_finder_;
   std::optional<track::Starter> starter_;  // one camera
   int num_with_depth_ = 0;                 // features of the last view that might have started

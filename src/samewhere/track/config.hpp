@@ -90,6 +90,7 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
 // Who has lost his place, and where he may be found.
 struct LostConfig {
   double max_speed_m_s = 3.0;
+  double max_ratio_without_depth = 0.9;
   double max_rival_ratio = 0.75;
   int views_to_resume = 5;
   int frames_to_restart = 30;
@@ -101,6 +102,11 @@ inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
                  "without depth there are no metres, and no limit",
          .min = 0.01,
          .max = 1000.0});
+  visit("max_ratio_without_depth", config.max_ratio_without_depth,
+        {.help = "features.max_ratio of who is lost where depths come from motion: few landmarks "
+                 "hold a pose, and the pose sorts out what matches wrongly",
+         .min = 0.1,
+         .max = 1.0});
   visit("max_rival_ratio", config.max_rival_ratio,
         {.help = "nobody is found while another place of the map has more than this share of the "
                  "best one's inliers, or of its inliers for each landmark in sight",
