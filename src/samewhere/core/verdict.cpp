@@ -68,8 +68,8 @@ std::string reason_for(const LoopClosure& loop) {
     reason += fmt::format("; {} views in a row go on to match", evidence.sequence->num_views);
   if (loop.overruled.is_valid() && evidence.rival && evidence.rival->gain)
     reason += fmt::format(
-        "; the loop of frame {} puts the camera {:.2f} m from here, but odometry speaks for this "
-        "one (twice the log of the likelihood ratio {:.1f})",
+        "; the last loop has put the camera where frame {} was taken, {:.2f} m from here, but "
+        "odometry speaks against the first that says so (gain {:.1f})",
         evidence.rival->frame.index(), evidence.rival->apart_m, *evidence.rival->gain);
   return reason;
 }

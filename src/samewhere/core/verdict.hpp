@@ -52,8 +52,8 @@ struct RivalEvidence {
   double apart_m = 0.0;
   double apart_rad = 0.0;
   double mahalanobis_squared = 0.0;  // under the drift since that loop; 6 degrees of freedom
-  // Of the loops that contradict this one: the first, and twice the logarithm of how much likelier
-  // odometry from before it makes this one. Not measured if odometry cannot compare them.
+  // Of the loops that contradict this one: the first, and how much likelier than that one odometry
+  // makes this one (docs/decisions/023; twice a logarithm). Not measured if it cannot tell.
   CandidateId first_loop = {};
   std::optional<double> gain = {};
 };

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
@@ -48,14 +47,16 @@ std::vector<scene::PoseChange> moves_to(const MapVersion& map, const optimize::P
   return moves;
 }
 
-// The overruled loop and those that were believed since.
+// The overruled loop and those that came after it, on the path or in time.
 std::vector<LoopEdge> suspects_of(const MapVersion& map, core::CandidateId overruled) {
   const auto first = std::find_if(map.loops.begin(), map.loops.end(),
                                   [&](const LoopEdge& known) { return known.cause == overruled; });
   std::vector<LoopEdge> suspects;
   if (first == map.loops.end()) return suspects;
   std::copy_if(map.loops.begin(), map.loops.end(), std::back_inserter(suspects),
-               [&](const LoopEdge& known) { return known.closed_at >= first->closed_at; });
+               [&](const LoopEdge& known) {
+                 return known.closed_at >= first->closed_at || known.query >= first->query;
+               });
   return suspects;
 }
 
@@ -67,11 +68,9 @@ MapVersion without(const MapVersion& map, const std::vector<LoopEdge>& loops) {
   return apply(map, edit);
 }
 
-// Loops of which nobody says that they are believed: the suspects, the doubted ones and the new
-// one, which is the last.
-std::vector<LoopEdge> claims_of(const MapVersion& map, const std::vector<LoopEdge>& suspects,
-                                const LoopEdge& loop) {
-  std::vector<LoopEdge> claims = suspects;
+// Loops that the map does not believe yet: the doubted ones and the new one, which is the last.
+std::vector<LoopEdge> claims_of(const MapVersion& map, const LoopEdge& loop) {
+  std::vector<LoopEdge> claims;
   for (const auto& doubted : map.doubted_loops)
     if (const auto claim = between_holders(map, doubted)) claims.push_back(*claim);
   claims.push_back(loop);
@@ -99,30 +98,6 @@ Answer answer_on(const std::vector<LoopEdge>& loops, std::size_t first_edge,
 
 bool is_of(const std::vector<BentLoop>& bent, core::CandidateId cause) {
   return !bent.empty() && bent.back().loop.cause == cause;
-}
-
-bool is_among(const std::vector<LoopEdge>& loops, core::CandidateId cause) {
-  return std::any_of(loops.begin(), loops.end(),
-                     [&](const LoopEdge& loop) { return loop.cause == cause; });
-}
-
-// What the answer changes of a map that believes in the suspects.
-Closing closing_by(Answer on_claims, const std::vector<BentLoop>& bent_known,
-                   const std::vector<LoopEdge>& suspects, const LoopEdge& loop) {
-  Closing closing;
-  if (is_of(on_claims.bent, loop.cause)) {
-    closing.refused = on_claims.bent.back();
-    closing.edit.doubted_loops.push_back(loop);
-    if (!suspects.empty()) return closing;  // they were asked for its sake alone
-  }
-  const auto is_suspect = [&](const LoopEdge& known) { return is_among(suspects, known.cause); };
-  closing.believed = std::move(on_claims.believed);
-  std::erase_if(closing.believed, is_suspect);
-  if (closing.believed.empty()) return closing;  // nothing speaks against what was believed
-  std::copy_if(on_claims.bent.begin(), on_claims.bent.end(), std::back_inserter(closing.withdrawn),
-               [&](const BentLoop& bent) { return is_suspect(bent.loop); });
-  closing.withdrawn.insert(closing.withdrawn.end(), bent_known.begin(), bent_known.end());
-  return closing;
 }
 
 }  // namespace
@@ -161,36 +136,76 @@ scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
   return edit;
 }
 
-Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::Config& config,
-                   core::CandidateId overruled) {
-  core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
-  core::require(is_live(map.at(loop.query)) && is_live(map.at(loop.match)),
-                "a loop that is closed joins live keyframes");
-  const std::vector<LoopEdge> suspects = suspects_of(map, overruled);
-  const MapVersion standing = without(map, suspects);
-  optimize::PoseGraph graph = pose_graph_of(standing, config);
+namespace {
+
+Closing close_among_known(const MapVersion& map, const LoopEdge& loop,
+                          const optimize::Config& config) {
+  optimize::PoseGraph graph = pose_graph_of(map, config);
   const std::size_t num_before = graph.edges.size();
-  const std::vector<LoopEdge> claims = claims_of(map, suspects, loop);
+  const std::vector<LoopEdge> claims = claims_of(map, loop);
   for (const auto& claim : claims) {
     graph.edges.push_back(as_edge(claim, config));
     graph.edges.back().is_doubted = claim.cause != loop.cause;
   }
   const optimize::PoseGraphSummary summary = solve_pose_graph(graph, config);
 
-  const Answer on_known =
-      answer_on(standing.loops, num_before - standing.loops.size(), graph, summary);
-  Closing closing =
-      closing_by(answer_on(claims, num_before, graph, summary), on_known.bent, suspects, loop);
-  if (closing.believed.empty()) return closing;
+  const Answer on_claims = answer_on(claims, num_before, graph, summary);
+  Closing closing;
+  closing.believed = on_claims.believed;
+  if (is_of(on_claims.bent, loop.cause)) {
+    closing.refused = on_claims.bent.back();
+    closing.edit.doubted_loops.push_back(loop);
+  }
+  if (closing.believed.empty()) return closing;  // nothing speaks against what was believed
+  closing.withdrawn = answer_on(map.loops, num_before - map.loops.size(), graph, summary).bent;
   for (const auto& bent : closing.withdrawn) {
     closing.edit.withdrawn_loops.push_back(bent.loop.cause);
     closing.edit.doubted_loops.push_back(bent.loop);
   }
   closing.edit.loops = closing.believed;
   // a withdrawn loop takes with it what bundles found while it was there
-  closing.edit.pose_changes = closing.withdrawn.empty() && suspects.empty()
+  closing.edit.pose_changes = closing.withdrawn.empty()
                                   ? moves_to(map, graph)
                                   : solve_poses(apply(map, closing.edit), config).pose_changes;
+  return closing;
+}
+
+// Those that contradict where the keyframes are.
+std::vector<BentLoop> bent_in(const MapVersion& map, const std::vector<LoopEdge>& loops,
+                              const optimize::Config& config) {
+  const optimize::PoseGraph graph = pose_graph_of(map, config);
+  std::vector<BentLoop> bent;
+  for (const auto& loop : loops) {
+    const double chi2 = chi2_of(graph, as_edge(loop, config));
+    if (chi2 > config.loop_chi2) bent.push_back({loop, chi2});
+  }
+  return bent;
+}
+
+}  // namespace
+
+Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::Config& config,
+                   core::CandidateId overruled) {
+  core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
+  core::require(is_live(map.at(loop.query)) && is_live(map.at(loop.match)),
+                "a loop that is closed joins live keyframes");
+  const std::vector<LoopEdge> suspects = suspects_of(map, overruled);
+  if (suspects.empty()) return close_among_known(map, loop, config);
+
+  const MapVersion standing = without(map, suspects);
+  Closing closing = close_among_known(standing, loop, config);
+  if (closing.refused) {  // the others were asked for its sake alone
+    Closing nothing;
+    nothing.refused = closing.refused;
+    nothing.edit.doubted_loops = {loop};
+    return nothing;
+  }
+  for (const auto& bent : bent_in(apply(standing, closing.edit), suspects, config)) {
+    closing.edit.withdrawn_loops.push_back(bent.loop.cause);
+    closing.withdrawn.push_back(bent);
+  }
+  closing.edit.pose_changes.clear();
+  closing.edit.pose_changes = solve_poses(apply(map, closing.edit), config).pose_changes;
   return closing;
 }
 

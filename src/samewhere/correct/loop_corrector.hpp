@@ -39,8 +39,9 @@ struct Closing {
 // ContractError if the loop has no cause, or names keyframes that are not there or not live
 // (between_holders() answers with live ones).
 // `overruled`: a loop of the map against which odometry speaks for the new one. That and those that
-// were believed since, which may rest on it, do not vote: they stay if they fit the others, and
-// are withdrawn if they do not. Ignored if the map no longer believes that loop.
+// were believed since, which may rest on it, are not in the graph that is solved: who fits it then
+// (Config::loop_chi2) stays, who does not is withdrawn for good, and not doubted. If the new one is
+// refused without them, nothing changes. Ignored if the map no longer believes that loop.
 Closing close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                    const optimize::Config& config, core::CandidateId overruled = {});
 

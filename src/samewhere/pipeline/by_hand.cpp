@@ -183,8 +183,9 @@ ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const c
                       const Config& config) {
   const core::CandidateId cause = row.candidate.id;
   const scene::LoopEdge edge = forced_edge(map, row, config);
-  Correction correction =
-      with_loop(holds(map, cause) ? without_loop(map, cause, config) : map, edge, config);
+  const auto& rival = core::evidence_of(row.verdict).rival;
+  Correction correction = with_loop(holds(map, cause) ? without_loop(map, cause, config) : map,
+                                    edge, config, rival ? rival->first_loop : core::CandidateId());
   const correct::Closing& closing = correction.closing;
   if (closing.refused)
     throw InputError(

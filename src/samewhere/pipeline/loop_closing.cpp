@@ -82,6 +82,14 @@ Config judging_each_view(Config config) {
 
 }  // namespace
 
+core::Verdict verdict_on(const scene::MapVersion& map, const scene::LoopEdge& loop,
+                         const core::LedgerRow& accepted, const Config& config) {
+  core::Evidence evidence = core::evidence_of(accepted.verdict);
+  evidence.rival =
+      verify::measure_rival(map, loop, config.optimize.odometry_scale_sigma, config.verify);
+  return verify::decide(accepted.candidate, evidence, {}, config.verify);
+}
+
 LoopClosing::LoopClosing(const Config& config)
     : config_(config), detector_(judging_each_view(config)) {}
 
@@ -108,7 +116,7 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   const scene::MapVersion& map = question.map;
   const features::View& view = map.at(question.keyframe).view;
   keyframe_of_[view.frame] = question.keyframe;
-  LoopAnswer answer;
+  LoopAnswer answer{.map_number = map.number};
   {
     const core::ScopedTimer timer(timings_, "thumbnail");
     answer.thumbnail = {view.frame, report::jpeg_bytes(question.image, report::kThumbnailWidth_px)};

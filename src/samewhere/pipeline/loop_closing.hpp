@@ -14,6 +14,10 @@ namespace samewhere::pipeline {
 // Which keyframes frames are.
 using KeyframeOf = std::map<core::FrameId, core::KeyframeId>;
 
+// The verdict on a loop, accepted once, on a map that by now believes others.
+core::Verdict verdict_on(const scene::MapVersion& map, const scene::LoopEdge& loop,
+                         const core::LedgerRow& accepted, const Config& config);
+
 // The third stage: have I been here before, and is it really the same place? Owns the place index
 // and the ledger.
 class LoopClosing {

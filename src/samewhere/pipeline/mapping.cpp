@@ -10,6 +10,7 @@
 #include <samewhere/map/part.hpp>
 #include <samewhere/map/triangulate.hpp>
 #include <samewhere/pipeline/correction.hpp>
+#include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/pipeline/mapping.hpp>
 
 namespace samewhere::pipeline {
@@ -114,7 +115,11 @@ bool Mapping::hear_loops(int max_unheard) {
   for (; num_unheard_ > max_unheard; --num_unheard_) {
     const LoopAnswer answer = loops_.receive();
     note(answer);
-    for (const auto& loop : answer.loops) were_parted |= correct(loop);
+    for (const auto& loop : answer.loops) {
+      const bool is_of_today = answer.map_number >= withdrawn_at_;
+      const std::optional<AcceptedLoop> heard = is_of_today ? loop : judged_anew(loop);
+      if (heard) were_parted |= correct(*heard);
+    }
   }
   return were_parted;
 }
@@ -137,7 +142,21 @@ bool Mapping::correct(const AcceptedLoop& heard) {
   think_again(closing, *loop);
   map_ = correction.map;
   if (!closing.believed.empty()) full_bundles_.note_correction(map_);
+  if (!closing.withdrawn.empty()) withdrawn_at_ = map_.number;
   return !closing.withdrawn.empty();
+}
+
+std::optional<AcceptedLoop> Mapping::judged_anew(AcceptedLoop heard) {
+  const auto known = accepted_.find(heard.edge.cause);
+  if (known == accepted_.end()) return heard;
+  const core::Verdict verdict = verdict_on(map_, heard.edge, known->second, config_);
+  const auto* loop = std::get_if<core::LoopClosure>(&verdict);
+  if (loop == nullptr) {
+    add_row({known->second.candidate, verdict});
+    return std::nullopt;
+  }
+  heard.overruled = loop->overruled;
+  return heard;
 }
 
 void Mapping::think_again(const correct::Closing& closing, const scene::LoopEdge& newest) {

@@ -49,6 +49,8 @@ class Mapping {
   bool hear_loops(int max_unheard);
   void note(const LoopAnswer& answer);
   bool correct(const AcceptedLoop& heard);
+  // The same loop, if it is one still: it was accepted on a map that believed other loops.
+  std::optional<AcceptedLoop> judged_anew(AcceptedLoop heard);
   // What the pose graph makes of the judge's verdicts goes into the ledger, too.
   void think_again(const correct::Closing& closing, const scene::LoopEdge& newest);
   void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);
@@ -67,8 +69,9 @@ class Mapping {
   KeepMap keep_map_;
   scene::MapVersion map_;
   core::PagedMemory feature_memory_;
-  int num_unheard_ = 0;  // questions to loop closing whose answers are to come
-  MapNews news_;         // since the map was kept
+  std::uint64_t withdrawn_at_ = 0;  // MapVersion::number when a loop was withdrawn last
+  int num_unheard_ = 0;             // questions to loop closing whose answers are to come
+  MapNews news_;                    // since the map was kept
   std::map<core::CandidateId, core::LedgerRow> accepted_;  // by the judge, in this session
   core::Ledger second_thoughts_;
 };

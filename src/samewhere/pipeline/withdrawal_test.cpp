@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/pipeline/test_rooms.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
 
@@ -7,6 +8,16 @@ namespace samewhere::pipeline {
 namespace {
 
 using scene::MapVersion;
+
+core::LedgerRow accepted(core::CandidateId id) {
+  core::LoopClosure loop{.candidate = id};
+  loop.evidence.geometry = core::GeometryEvidence{.num_matches = 200,
+                                                  .num_inliers = 150,
+                                                  .inlier_ratio = 0.75,
+                                                  .spread_ratio = 0.5,
+                                                  .match_from_query = core::Sim3{}};
+  return {{.id = id, .query = core::FrameId(12), .match = core::FrameId(0)}, loop};
+}
 
 TEST_F(LookAlikeRooms, AWrongLoopMakesThemOneAndWithoutItTheyAreTwo) {
   EXPECT_EQ(num_seen_in_both_rooms(map_), 0);
@@ -55,10 +66,17 @@ TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoLiesPartsThem) {
   const Correction correction = with_loop(believed, spoken, config_, kLie);
   EXPECT_EQ(correction.closing.withdrawn.size(), 2U);
   ASSERT_EQ(correction.map.loops.size(), 1U);
-  EXPECT_EQ(correction.map.doubted_loops.size(), 2U);
+  EXPECT_TRUE(correction.map.doubted_loops.empty());
   EXPECT_EQ(survivors(correction.map), survivors(map_));
   EXPECT_EQ(num_seen_in_both_rooms(correction.map), 0);
   EXPECT_LT(rmse_m(correction.map), 0.1);
+
+  // a third lie, accepted while the other two were believed
+  const core::LedgerRow row = accepted(core::CandidateId(9));
+  const scene::LoopEdge third = loop(
+      2 * kPerRoom, kPerRoom - 1, inverse(map::test_walk(5)) * map::test_walk(6), row.candidate.id);
+  EXPECT_TRUE(core::is_loop(verdict_on(believed, third, row, config_)));
+  EXPECT_EQ(core::stage_of(verdict_on(correction.map, third, row, config_)), "rival");
 }
 
 // What was culled while the lie was believed hung on the other room.

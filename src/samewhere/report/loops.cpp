@@ -18,6 +18,16 @@ void add_score(Json& scores, const char* name, double value) {
   if (std::isfinite(value)) scores[name] = value;
 }
 
+void add_rival(Json& scores, const core::RivalEvidence& rival) {
+  scores["rival"] = rival.frame.index();
+  add_score(scores, "rival_apart_m", rival.apart_m);
+  add_score(scores, "rival_apart_rad", rival.apart_rad);
+  add_score(scores, "rival_mahalanobis_squared", rival.mahalanobis_squared);
+  if (!rival.gain) return;
+  scores["rival_first_loop"] = rival.first_loop.index();
+  add_score(scores, "rival_gain", *rival.gain);
+}
+
 Json scores_of(const core::Verdict& verdict) {
   const core::Evidence& evidence = core::evidence_of(verdict);
   Json scores = Json::object();
@@ -40,16 +50,7 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "correction_rad", evidence.odometry->correction_rad);
     add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
   }
-  if (evidence.rival) {
-    scores["rival"] = evidence.rival->frame.index();
-    add_score(scores, "rival_apart_m", evidence.rival->apart_m);
-    add_score(scores, "rival_apart_rad", evidence.rival->apart_rad);
-    add_score(scores, "rival_mahalanobis_squared", evidence.rival->mahalanobis_squared);
-    if (evidence.rival->gain) {
-      scores["rival_first_loop"] = evidence.rival->first_loop.index();
-      add_score(scores, "rival_gain", *evidence.rival->gain);
-    }
-  }
+  if (evidence.rival) add_rival(scores, *evidence.rival);
   if (evidence.sequence) {
     scores["query_view"] = evidence.sequence->query_view;
     scores["match_view"] = evidence.sequence->match_view;

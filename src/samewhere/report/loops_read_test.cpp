@@ -121,7 +121,7 @@ TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithWhatSpokeForIt) {
   EXPECT_EQ(read_back.evidence.rival->first_loop, core::CandidateId(4));
   EXPECT_EQ(read_back.evidence.rival->gain, 9.5);
   EXPECT_THAT(core::reason_of(found.at(0).verdict),
-              HasSubstr("the loop of frame 3 puts the camera 1.80 m from here"));
+              HasSubstr("the camera where frame 3 was taken, 1.80 m from here, but odometry"));
 }
 
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {

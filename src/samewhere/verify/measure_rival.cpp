@@ -36,19 +36,15 @@ bool is_comparable(const scene::MapVersion& map, const scene::LoopEdge& claim,
   return origin == origin_of(map, loop.match) || origin == origin_of(map, loop.query);
 }
 
-// How well a claim goes with a chain of odometry: its error has a normal distribution.
+// How well a claim goes with a chain of odometry, whose error has a normal distribution.
 struct Fit {
   double chi2 = 0.0;
   double log_det = 0.0;  // of the covariance
 };
 
-// Minus twice the logarithm of how likely the claim is, but for a constant.
-double surprise(const Fit& fit) { return fit.chi2 + fit.log_det; }
-
 class Odometry {
  public:
-  Odometry(const scene::MapVersion& map, double scale_sigma, const Config& config)
-      : map_(map), scale_sigma_(scale_sigma), config_(config) {}
+  Odometry(const scene::MapVersion& map, const Config& config) : map_(map), config_(config) {}
 
   // The chain leads from `begin`, which the map places relative to the match, to the query.
   Fit fit(const scene::LoopEdge& claim, core::KeyframeId begin, const OdometryChain& chain) const {
@@ -56,7 +52,7 @@ class Odometry {
                                  world_from_body(map_, claim.match) * claim.match_from_query;
     const core::Vector6d error = difference(chain.begin_from_end.a_from_b, claimed);
     const Eigen::LDLT<core::Matrix6d> covariance(
-        covariance_with_loop(map_, chain, begin, claim.query, scale_sigma_, config_));
+        covariance_with_loop(map_, chain, begin, claim.query, 0.0, config_));
     return {error.dot(covariance.solve(error)), covariance.vectorD().array().log().sum()};
   }
 
@@ -68,40 +64,48 @@ class Odometry {
 
  private:
   const scene::MapVersion& map_;
-  double scale_sigma_;
   const Config& config_;
 };
 
-// The loops on a claim's path that contradict it, up to the youngest that does not.
+// The loops on a claim's path that contradict it, or go with those that do.
 struct Contradiction {
   const scene::LoopEdge* first = nullptr;
-  // What odometry may be held against without leaning on any of them: where the youngest loop that
-  // goes with the claim has put the camera; none before the first of all loops.
+  // Where the youngest loop that goes with the claim has put the camera; none if all contradict it.
   std::optional<core::KeyframeId> base;
 };
 
+// Far enough back, odometry would allow any two loops; so a loop goes with whom it fits better.
 Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                const Odometry& odometry, const Config& config) {
   std::map<core::KeyframeId, const scene::LoopEdge*> loop_of;
   for (const auto& loop : map.loops) loop_of.try_emplace(loop.query, &loop);
   Contradiction found;
-  ClimbingChain path(claim.query);
+  ClimbingChain to_claim(claim.query);
+  ClimbingChain to_first(claim.query);
   do {
-    const auto loop = loop_of.find(path.begin());
+    const core::KeyframeId at = to_claim.begin();
+    if (found.first != nullptr && to_first.begin() != at) to_first.climb(map);
+    const auto loop = loop_of.find(at);
     if (loop == loop_of.end()) continue;
-    if (odometry.fit(claim, path.begin(), path.chain()).chi2 <= config.max_rival_chi_square) {
-      found.base = path.begin();
+    const double chi2 = odometry.fit(claim, at, to_claim.chain()).chi2;
+    const bool is_with_claim =
+        chi2 <= config.max_rival_chi_square &&
+        (found.first == nullptr || chi2 <= odometry.fit(*found.first, at, to_first.chain()).chi2);
+    if (is_with_claim) {
+      found.base = at;
       return found;
     }
     found.first = loop->second;
-  } while (path.begin() > claim.match && path.climb(map));
+    to_first = ClimbingChain(at);
+  } while (to_claim.begin() > claim.match && to_claim.climb(map));
   return found;
 }
 
-// Odometry that leans on none of the loops that contradict the claim, held against it and against
-// the first of them.
-void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                  const Odometry& odometry, const Config& config, core::RivalEvidence& rival) {
+// How much likelier odometry, held against none of the loops that contradict the claim, makes it
+// than the first of them. A longer way allows more: that counts against the claim, never for it.
+void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, const Config& config,
+                  core::RivalEvidence& rival) {
+  const Odometry odometry(map, config);
   const Contradiction found = contradiction_of(map, claim, odometry, config);
   if (found.first == nullptr || claim.match >= found.first->query) return;
   const auto fit_of = [&](const scene::LoopEdge& loop) {
@@ -112,7 +116,16 @@ void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim,
   const auto of_first = fit_of(*found.first);
   if (!of_claim || !of_first) return;
   rival.first_loop = found.first->cause;
-  rival.gain = surprise(*of_first) - surprise(*of_claim);
+  rival.gain =
+      of_first->chi2 - of_claim->chi2 + std::min(0.0, of_first->log_det - of_claim->log_det);
+}
+
+// Without depth, loops have stretched what odometry measured.
+bool may_compare(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                 const core::RivalEvidence& rival, const Config& config) {
+  return rival.mahalanobis_squared > config.max_rival_chi_square && !is_without_depth(map) &&
+         measure_odometry(map, claim, 0.0, config).mahalanobis_squared <=
+             config.max_odometry_chi_square;
 }
 
 }  // namespace
@@ -131,8 +144,7 @@ std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
                             .apart_m = found.correction_m,
                             .apart_rad = found.correction_rad,
                             .mahalanobis_squared = found.mahalanobis_squared};
-  if (rival.mahalanobis_squared > config.max_rival_chi_square)
-    measure_gain(map, claim, Odometry(map, scale_sigma, config), config, rival);
+  if (may_compare(map, claim, rival, config)) measure_gain(map, claim, config, rival);
   return rival;
 }
 

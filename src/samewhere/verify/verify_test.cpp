@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -354,21 +355,57 @@ TEST(MeasureRival, OdometrySpeaksForWhoSaysWhatItSaid) {
 
 TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
   scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  const double without = *measure_rival(map, sideways(map, 24, -1.8), 0.01, {})->gain;
+  const auto without = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
+  ASSERT_TRUE(without && without->gain);
   scene::Edit edit;
   edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
   map = apply(map, edit);
   const auto with = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
   ASSERT_TRUE(with && with->gain);
   EXPECT_EQ(with->first_loop, core::CandidateId(20));
-  EXPECT_GT(*with->gain, 3.0 * without) << "two keyframes leave the lie less room than twenty";
+  EXPECT_GT(*with->gain, 3.0 * std::abs(*without->gain))
+      << "two keyframes leave the lie less room than twenty";
 }
 
-TEST(MeasureRival, WhoGoesWithTheLastLoopOrMatchesWhatCameAfterItComparesNothing) {
+// After a long way odometry allows both; but it goes better with the lies before it than the claim.
+TEST(MeasureRival, ALoopThatGoesWithTheContradictorsIsNoGroundForTheClaim) {
+  const scene::MapVersion map =
+      corridor_moved_by({20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70}, 4.0);
+  const auto rival = measure_rival(map, sideways(map, 72, -4.0), 0.01, {});
+  ASSERT_TRUE(rival && rival->gain);
+  EXPECT_EQ(rival->first_loop, core::CandidateId(20));
+}
+
+// Its short way leaves a claim little room, but that is nothing against a loop whose way was long.
+TEST(MeasureRival, AMatchNearByIsNoEvidenceByItself) {
+  scene::MapVersion map = corridor(80);
+  scene::Edit edit;
+  edit.loops.push_back(claim(60, 3, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 57.0}}));
+  map = apply(map, edit);
+  const auto rival = measure_rival(
+      map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), 0.01, {});
+  ASSERT_TRUE(rival && rival->gain);
+  EXPECT_LT(*rival->gain, -10.0);
+}
+
+TEST(MeasureRival, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
   EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), 0.01, {})->gain);
-  core::Rigid3 beside{Eigen::Quaterniond::Identity(), {1.8, 0.0, 2.0}};
-  EXPECT_FALSE(measure_rival(map, claim(25, 23, beside), 0.01, {})->gain);
+  const auto beyond = measure_rival(map, sideways(map, 24, 8.0), 0.01, {});
+  EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_FALSE(beyond->gain);
+}
+
+TEST(MeasureRival, WithoutDepthNothingIsCompared) {
+  scene::MapVersion map =
+      corridor(40, features::test_view(features::test_world(1, 20), 0, core::Rigid3{}, 0.0, false));
+  scene::Edit edit;
+  edit.loops.push_back(sideways(map, 20, 0.0));
+  map = apply(map, edit);
+  const auto rival = measure_rival(map, sideways(map, 22, 1.8), 0.01, {});
+  ASSERT_TRUE(rival);
+  EXPECT_GT(rival->mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_FALSE(rival->gain);
 }
 
 TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
