@@ -129,6 +129,13 @@ std::optional<core::Verdict> check_other_views(const Candidate& candidate, const
   return undecided;
 }
 
+// With its pose, and against whom it contradicts.
+void join(core::LoopClosure& loop, const Config& config) {
+  loop.match_from_query = loop.evidence.geometry->match_from_query;
+  const auto& rival = loop.evidence.rival;
+  if (rival && overrules(*rival, config)) loop.overruled = rival->first_loop;
+}
+
 }  // namespace
 
 bool may_need_sequences(const Config& config) {
@@ -177,9 +184,7 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   if (!refused) {
     const auto undecided = check_other_views(candidate, evidence, config);
     if (undecided && config.require_geometry) return *undecided;
-    if (!undecided) loop.match_from_query = evidence.geometry->match_from_query;
-    if (!undecided && evidence.rival && overrules(*evidence.rival, config))
-      loop.overruled = evidence.rival->first_loop;
+    if (!undecided) join(loop, config);
   }
   // with depth it is 1, not about 1
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;

@@ -14,8 +14,7 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
   if (const auto chain = odometry_between(map, claim.match, claim.query)) {
-    const core::Matrix6d covariance =
-        covariance_with_loop(map, *chain, claim.match, claim.query, scale_sigma, config);
+    const core::Matrix6d covariance = covariance_with_loop(map, *chain, scale_sigma, config);
     evidence.mahalanobis_squared = correction.dot(covariance.llt().solve(correction));
   }
   return evidence;

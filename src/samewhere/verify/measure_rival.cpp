@@ -46,20 +46,19 @@ class Odometry {
  public:
   Odometry(const scene::MapVersion& map, const Config& config) : map_(map), config_(config) {}
 
-  // The chain leads from `begin`, which the map places relative to the match, to the query.
-  Fit fit(const scene::LoopEdge& claim, core::KeyframeId begin, const OdometryChain& chain) const {
-    const core::Rigid3 claimed = inverse(world_from_body(map_, begin)) *
+  // The chain leads to the query, from a keyframe that the map places relative to the match.
+  Fit fit(const scene::LoopEdge& claim, const OdometryChain& chain) const {
+    const core::Rigid3 claimed = inverse(world_from_body(map_, chain.begin)) *
                                  world_from_body(map_, claim.match) * claim.match_from_query;
     const core::Vector6d error = difference(chain.begin_from_end.a_from_b, claimed);
-    const Eigen::LDLT<core::Matrix6d> covariance(
-        covariance_with_loop(map_, chain, begin, claim.query, 0.0, config_));
+    const Eigen::LDLT<core::Matrix6d> covariance(covariance_with_loop(map_, chain, 0.0, config_));
     return {error.dot(covariance.solve(error)), covariance.vectorD().array().log().sum()};
   }
 
   std::optional<Fit> fit(const scene::LoopEdge& claim, core::KeyframeId begin) const {
     const auto chain = odometry_between(map_, begin, claim.query);
     if (!chain) return std::nullopt;
-    return fit(claim, begin, *chain);
+    return fit(claim, *chain);
   }
 
  private:
@@ -87,10 +86,10 @@ Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEd
     if (found.first != nullptr && to_first.begin() != at) to_first.climb(map);
     const auto loop = loop_of.find(at);
     if (loop == loop_of.end()) continue;
-    const double chi2 = odometry.fit(claim, at, to_claim.chain()).chi2;
+    const double chi2 = odometry.fit(claim, to_claim.chain()).chi2;
     const bool is_with_claim =
         chi2 <= config.max_rival_chi_square &&
-        (found.first == nullptr || chi2 <= odometry.fit(*found.first, at, to_first.chain()).chi2);
+        (found.first == nullptr || chi2 <= odometry.fit(*found.first, to_first.chain()).chi2);
     if (is_with_claim) {
       found.base = at;
       return found;

@@ -12,10 +12,9 @@ UncertainPose edge_of(const scene::Keyframe& keyframe) {
 
 // Of the end's position in the beginning, if the scale crept by a share of 1 at each keyframe
 // passed.
-Eigen::Matrix3d covariance_of_creep(const scene::MapVersion& map, const OdometryChain& chain,
-                                    core::KeyframeId begin, core::KeyframeId end) {
-  const core::Rigid3 begin_from_world = inverse(world_from_body(map, begin));
-  const Eigen::Vector3d there = world_from_body(map, end).translation;
+Eigen::Matrix3d covariance_of_creep(const scene::MapVersion& map, const OdometryChain& chain) {
+  const core::Rigid3 begin_from_world = inverse(world_from_body(map, chain.begin));
+  const Eigen::Vector3d there = world_from_body(map, chain.end).translation;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const auto& id : chain.passed) {
     const Eigen::Vector3d rest =
@@ -28,11 +27,11 @@ Eigen::Matrix3d covariance_of_creep(const scene::MapVersion& map, const Odometry
 }  // namespace
 
 bool ClimbingChain::climb(const scene::MapVersion& map) {
-  const scene::Keyframe& keyframe = map.at(begin_);
+  const scene::Keyframe& keyframe = map.at(chain_.begin);
   if (!keyframe.odometry) return false;
   chain_.begin_from_end = compose(edge_of(keyframe), chain_.begin_from_end);
-  chain_.passed.push_back(begin_);
-  begin_ = keyframe.odometry->parent;
+  chain_.passed.push_back(chain_.begin);
+  chain_.begin = keyframe.odometry->parent;
   return true;
 }
 
@@ -45,6 +44,7 @@ std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core
     if (!younger.climb(map)) return std::nullopt;
   }
   OdometryChain chain = to_end.chain();
+  chain.begin = begin;
   chain.begin_from_end =
       compose(inverse(to_begin.chain().begin_from_end), to_end.chain().begin_from_end);
   chain.passed.insert(chain.passed.end(), to_begin.chain().passed.begin(),
@@ -53,12 +53,10 @@ std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core
 }
 
 core::Matrix6d covariance_with_loop(const scene::MapVersion& map, const OdometryChain& chain,
-                                    core::KeyframeId begin, core::KeyframeId end,
                                     double scale_sigma, const Config& config) {
   core::Matrix6d covariance = chain.begin_from_end.covariance + loop_information(config).inverse();
   if (is_without_depth(map))
-    covariance.topLeftCorner<3, 3>() +=
-        scale_sigma * scale_sigma * covariance_of_creep(map, chain, begin, end);
+    covariance.topLeftCorner<3, 3>() += scale_sigma * scale_sigma * covariance_of_creep(map, chain);
   return covariance;
 }
 

@@ -14,6 +14,8 @@ namespace samewhere::verify {
 
 // What odometry alone measured from one keyframe to another, and the keyframes that it passed.
 struct OdometryChain {
+  core::KeyframeId begin;
+  core::KeyframeId end;
   geometry::UncertainPose begin_from_end;
   std::vector<core::KeyframeId> passed;
 };
@@ -26,15 +28,14 @@ std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core
 // A chain that ends with a keyframe and is made longer at its beginning, towards the origin.
 class ClimbingChain {
  public:
-  explicit ClimbingChain(core::KeyframeId end) : begin_(end) {}
+  explicit ClimbingChain(core::KeyframeId end) { chain_.begin = chain_.end = end; }
 
-  core::KeyframeId begin() const { return begin_; }
+  core::KeyframeId begin() const { return chain_.begin; }
   const OdometryChain& chain() const { return chain_; }
   // One edge more; false at the origin, which has none.
   bool climb(const scene::MapVersion& map);
 
  private:
-  core::KeyframeId begin_;
   OdometryChain chain_;
 };
 
@@ -42,7 +43,6 @@ class ClimbingChain {
 // also what its scale may have crept: a share of scale_sigma at every keyframe passed, which
 // stretches the rest of the way.
 core::Matrix6d covariance_with_loop(const scene::MapVersion& map, const OdometryChain& chain,
-                                    core::KeyframeId begin, core::KeyframeId end,
                                     double scale_sigma, const Config& config);
 
 // How far a claimed pose is from a known one [m in `begin`; rad].
