@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include <samewhere/features/paged.hpp>
 #include <samewhere/features/test_world.hpp>
