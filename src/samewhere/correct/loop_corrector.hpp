@@ -35,11 +35,11 @@ struct Closing {
 // A loop that the pose graph does not believe (optimize/) is kept as a doubted one, and asked again
 // with every new loop: of two that contradict each other, nobody knows which one lies until a third
 // speaks. So a new loop may be refused, which moves nothing, and an older one withdrawn with all
-// that it caused, in the same edit. Only losses kGnc and kGncEach refuse or withdraw. Throws
-// ContractError if the loop has no cause, or names keyframes that are not there or not live
-// (between_holders() answers with live ones).
-// `overruled`: a loop of the map against which odometry speaks for the new one. That and those that
-// were believed since, which may rest on it, are not in the graph that is solved: who fits it then
+// that it caused, in the same edit. Only losses kGnc and kGncEach refuse or withdraw (overruled
+// ones go under any). Throws ContractError if the loop has no cause, or names keyframes that are
+// not there or not live (between_holders() answers with live ones). `overruled`: a loop of the map
+// against which odometry speaks for the new one. That, those later on the path and those believed
+// since, which may rest on it, are not in the graph that is solved: who fits it then
 // (Config::loop_chi2) stays, who does not is withdrawn for good, and not doubted. If the new one is
 // refused without them, nothing changes. Ignored if the map no longer believes that loop.
 Closing close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,

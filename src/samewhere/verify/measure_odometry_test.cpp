@@ -1,0 +1,201 @@
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/features/test_world.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/measure_rival.hpp>
+
+namespace samewhere::verify {
+namespace {
+
+// A straight corridor of keyframes one metre apart.
+scene::MapVersion corridor(int count, const features::View& view = features::View{}) {
+  scene::Edit edit;
+  const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0, 0, 1}};
+  core::Rigid3 pose;
+  for (int i = 0; i < count; ++i) {
+    scene::Keyframe keyframe;
+    keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
+    keyframe.world_from_body = pose;
+    keyframe.view = view;
+    if (view.features) keyframe.slots.resize(static_cast<std::size_t>(view.features->size()));
+    if (i > 0) {
+      keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), step,
+                           400.0 * core::Matrix6d::Identity()};
+    }
+    edit.keyframes.push_back(keyframe);
+    pose = pose * step;
+  }
+  return apply(scene::MapVersion{}, edit);
+}
+
+scene::LoopEdge claim(int query, int match, const core::Rigid3& match_from_query) {
+  scene::LoopEdge loop;
+  loop.query = core::KeyframeId(static_cast<std::uint64_t>(query));
+  loop.match = core::KeyframeId(static_cast<std::uint64_t>(match));
+  loop.match_from_query = match_from_query;
+  return loop;
+}
+
+TEST(MeasureOdometry, ALoopThatAgreesWithOdometryMovesNothing) {
+  const auto evidence = measure_odometry(
+      corridor(10), claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}), 0.01, {});
+  EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
+  EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
+}
+
+TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALongOne) {
+  const core::Rigid3 beside{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.0}};
+  const auto after = [&](int steps) {
+    core::Rigid3 match_from_query = beside;
+    match_from_query.translation.z() = steps - 1.0;  // one metre short of what odometry says
+    return measure_odometry(corridor(steps + 1), claim(steps, 0, match_from_query), 0.01, {});
+  };
+  EXPECT_NEAR(after(5).correction_m, 1.0, 1e-9);
+  EXPECT_GT(after(5).mahalanobis_squared, Config{}.max_odometry_chi_square);
+  EXPECT_LT(after(60).mahalanobis_squared, after(5).mahalanobis_squared / 5.0);
+}
+
+TEST(MeasureOdometry, WithoutDepthTheWayMayBeLongerOrShorterThanItSeemedButNoMoreBent) {
+  const features::View without_depth =
+      features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
+  const auto squared = [&](const features::View& view, const Eigen::Vector3d& error) {
+    const core::Rigid3 seen{Eigen::Quaterniond::Identity(), error + Eigen::Vector3d(0, 0, 20)};
+    return measure_odometry(corridor(21, view), claim(20, 0, seen), 0.02, {}).mahalanobis_squared;
+  };
+  const Eigen::Vector3d along(0.0, 0.0, 2.0);
+  const Eigen::Vector3d aside(2.0, 0.0, 0.0);
+  EXPECT_LT(squared(without_depth, along), 0.8 * squared({}, along));
+  EXPECT_NEAR(squared(without_depth, aside), squared({}, aside), 1e-6);
+}
+
+TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
+  scene::MapVersion map = corridor(3);
+  scene::Edit edit;
+  edit.keyframes.resize(1);
+  edit.keyframes[0].id = core::KeyframeId(3);
+  map = apply(map, edit);
+  const auto evidence = measure_odometry(map, claim(3, 0, {}), 0.01, {});
+  EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
+}
+
+// A corridor whose keyframe 20 a loop has put where keyframe 2 is.
+scene::MapVersion corridor_with_loop() {
+  scene::MapVersion map = corridor(80);
+  scene::Edit edit;
+  edit.loops.push_back(claim(20, 2, {}));
+  return apply(map, edit);
+}
+
+// A claim about this keyframe that would move it sideways by so much.
+scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres) {
+  const scene::LoopEdge ends = claim(query, 3, {});
+  core::Rigid3 match_from_query =
+      inverse(world_from_body(map, ends.match)) * world_from_body(map, ends.query);
+  match_from_query.translation.x() += metres;
+  return claim(query, 3, match_from_query);
+}
+
+TEST(MeasureRival, TheFirstLookAlikeHasNone) {
+  const scene::MapVersion map = corridor_with_loop();
+  EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), 0.01, {}));
+  EXPECT_TRUE(measure_rival(map, sideways(map, 20, 1.8), 0.01, {}));
+}
+
+TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
+  const scene::MapVersion map = corridor_with_loop();
+  const auto after = [&](int keyframes, double metres) {
+    return *measure_rival(map, sideways(map, 20 + keyframes, metres), 0.01, {});
+  };
+  EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
+  EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
+  EXPECT_GT(after(2, 1.8).mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_LT(after(2, 0.05).mahalanobis_squared, 1.0) << "one place, and a better pose";
+  EXPECT_LT(after(55, 1.8).mahalanobis_squared, after(2, 1.8).mahalanobis_squared / 5.0);
+}
+
+// A corridor in which loops have moved keyframes from the first of them on sideways by so much.
+scene::MapVersion corridor_moved_by(const std::vector<int>& queries, double metres) {
+  scene::MapVersion map = corridor(80);
+  scene::Edit edit;
+  for (const int query : queries) {
+    edit.loops.push_back(sideways(map, query, metres));
+    edit.loops.back().cause = core::CandidateId(static_cast<std::uint64_t>(query));
+  }
+  for (std::size_t i = static_cast<std::size_t>(queries.front()); i < map.keyframes.size(); ++i)
+    edit.pose_changes.push_back(
+        {core::KeyframeId(i), {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}}});
+  return apply(map, edit);
+}
+
+TEST(MeasureRival, OdometrySpeaksForWhoSaysWhatItSaid) {
+  const scene::MapVersion map = corridor_moved_by({20, 22}, 4.0);
+  const auto back = measure_rival(map, sideways(map, 24, -4.0), 0.01, {});
+  ASSERT_TRUE(back && back->gain);
+  EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second only says what the first did";
+  EXPECT_GT(*back->gain, 9.0);
+  const auto further = measure_rival(map, sideways(map, 24, 4.0), 0.01, {});
+  ASSERT_TRUE(further && further->gain);
+  EXPECT_LT(*further->gain, -9.0);
+}
+
+TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
+  scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
+  const auto without = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
+  ASSERT_TRUE(without && without->gain);
+  scene::Edit edit;
+  edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
+  map = apply(map, edit);
+  const auto with = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
+  ASSERT_TRUE(with && with->gain);
+  EXPECT_EQ(with->first_loop, core::CandidateId(20));
+  EXPECT_GT(*with->gain, 3.0 * std::abs(*without->gain))
+      << "two keyframes leave the lie less room than twenty";
+}
+
+// After a long way odometry allows both; but it goes better with the lies before it than the claim.
+TEST(MeasureRival, ALoopThatGoesWithTheContradictorsIsNoGroundForTheClaim) {
+  const scene::MapVersion map =
+      corridor_moved_by({20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70}, 4.0);
+  const auto rival = measure_rival(map, sideways(map, 72, -4.0), 0.01, {});
+  ASSERT_TRUE(rival && rival->gain);
+  EXPECT_EQ(rival->first_loop, core::CandidateId(20));
+}
+
+// Its short way leaves a claim little room, but that is nothing against a loop whose way was long.
+TEST(MeasureRival, AMatchNearByIsNoEvidenceByItself) {
+  scene::MapVersion map = corridor(80);
+  scene::Edit edit;
+  edit.loops.push_back(claim(60, 3, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 57.0}}));
+  map = apply(map, edit);
+  const auto rival = measure_rival(
+      map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), 0.01, {});
+  ASSERT_TRUE(rival && rival->gain);
+  EXPECT_LT(*rival->gain, -10.0);
+}
+
+TEST(MeasureRival, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
+  const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
+  EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), 0.01, {})->gain);
+  const auto beyond = measure_rival(map, sideways(map, 24, 8.0), 0.01, {});
+  EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_FALSE(beyond->gain);
+}
+
+TEST(MeasureRival, WithoutDepthNothingIsCompared) {
+  scene::MapVersion map =
+      corridor(40, features::test_view(features::test_world(1, 20), 0, core::Rigid3{}, 0.0, false));
+  scene::Edit edit;
+  edit.loops.push_back(sideways(map, 20, 0.0));
+  map = apply(map, edit);
+  const auto rival = measure_rival(map, sideways(map, 22, 1.8), 0.01, {});
+  ASSERT_TRUE(rival);
+  EXPECT_GT(rival->mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_FALSE(rival->gain);
+}
+
+}  // namespace
+}  // namespace samewhere::verify
