@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/pipeline/figures.hpp>
+#include <samewhere/pipeline/map_saver.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
 
@@ -27,6 +30,7 @@ struct Settings {
   int num_parts = 9;
   int keyframes_in_memory = pipeline::Config{}.map.keyframes_in_memory;
   bool close_loops = true;
+  std::string map_file;
   std::string csv_file;
 };
 
@@ -69,10 +73,13 @@ std::string in_short(const std::vector<double>& ms) {
 
 class Haul {
  public:
-  explicit Haul(const pipeline::Config& config)
+  // The map is saved as it grows, if a file is named.
+  Haul(const pipeline::Config& config, const std::string& map_file)
       : source_(pipeline::open_source(config)),
         slam_(with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
-              hooks()) {}
+              hooks()) {
+    if (!map_file.empty()) saver_.emplace(map_file, config, slam_.describer_checksum());
+  }
 
   // Row by row: a part of the walk.
   Table run(int num_parts) {
@@ -86,6 +93,8 @@ class Haul {
     }
     progress.finish();
     slam_.finish();
+    if (saver_ && saver_->error()) throw core::InputError(*saver_->error());
+    saver_.reset();
     return std::move(table_);
   }
 
@@ -117,17 +126,19 @@ class Haul {
     Table table{{"figure", "value"}, {}};
     for (const auto& [name, value] : pipeline::figures_of(evaluate_slam(findings, truth)))
       table.rows.push_back({name, value});
+    table.rows.push_back({"live landmarks", std::to_string(num_live(slam_.map().landmarks))});
     return table;
   }
 
  private:
   pipeline::SlamHooks hooks() {
     pipeline::SlamHooks hooks;
-    hooks.keep_map = [this](const scene::MapVersion& map, const auto&) {
+    hooks.keep_map = [this](const scene::MapVersion& map, const pipeline::MapNews& news) {
       num_keyframes_ = map.keyframes.size();
       num_live_keyframes_ = num_live(map.keyframes);
-      num_live_landmarks_ = num_live(map.landmarks);
+      num_landmarks_ = map.landmarks.size();
       num_loops_ = map.loops.size();
+      if (saver_) saver_->save(map, news);
     };
     return hooks;
   }
@@ -148,7 +159,7 @@ class Haul {
     const Memory memory = memory_now();
     table_.rows.push_back(
         {std::to_string(num_fed), std::to_string(num_keyframes_),
-         std::to_string(num_live_keyframes_), std::to_string(num_live_landmarks_),
+         std::to_string(num_live_keyframes_), std::to_string(num_landmarks_),
          std::to_string(num_loops_), fmt::format("{:.1f} / {:.1f}", own.median_ms, own.p99_ms),
          fmt::format("{:.1f} / {:.1f}", wall.median_ms, wall.p99_ms),
          fmt::format("{:.0f}", memory.own_mib), fmt::format("{:.0f}", memory.used_mib),
@@ -159,14 +170,15 @@ class Haul {
   // of the map that mapping kept last, in its thread
   std::atomic<std::size_t> num_keyframes_ = 0;
   std::atomic<std::size_t> num_live_keyframes_ = 0;
-  std::atomic<std::size_t> num_live_landmarks_ = 0;
+  std::atomic<std::size_t> num_landmarks_ = 0;
   std::atomic<std::size_t> num_loops_ = 0;
   Part part_;
-  Table table_{
-      {"frames", "keyframes", "live", "landmarks", "loops", "tracking, processor ms median / p99",
-       "wall ms median / p99", "memory MiB", "in use MiB", "mapped files MiB"},
-      {}};
+  Table table_{{"frames", "keyframes", "live", "landmarks ever", "loops",
+                "tracking, processor ms median / p99", "wall ms median / p99", "memory MiB",
+                "in use MiB", "mapped files MiB"},
+               {}};
   std::unique_ptr<core::Source> source_;
+  std::optional<pipeline::MapSaver> saver_;  // from the first frame on in mapping's thread
   pipeline::Slam slam_;
 };
 
@@ -176,7 +188,7 @@ void measure(const Settings& settings) {
   config.close_loops = settings.close_loops;
   config.twin.num_frames = settings.num_frames;
   config.map.keyframes_in_memory = settings.keyframes_in_memory;
-  Haul haul(config);
+  Haul haul(config, settings.map_file);
   const Table table = haul.run(settings.num_parts);
   publish(table, settings.csv_file);
   publish(haul.stages(), "");
@@ -194,9 +206,10 @@ std::function<void()> set_up(CLI::App& app) {
   app.add_option("--parts", settings->num_parts, "of the walk, a row each")
       ->check(CLI::Range(1, 1000));
   app.add_option("--in-memory", settings->keyframes_in_memory,
-                 "keyframes whose features stay in memory")
+                 "keyframes whose features and landmarks stay in memory")
       ->check(CLI::Range(1, 1000000));
   app.add_option("--close-loops", settings->close_loops, "whether loops are looked for");
+  app.add_option("--map", settings->map_file, "save the map in this new file");
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

@@ -43,6 +43,11 @@ std::optional<std::pair<std::shared_ptr<const void>, std::span<std::byte>>> map_
 
 }  // namespace
 
+PagedBlock::~PagedBlock() {
+  // where the file system knows no holes the pages stay until the file goes
+  madvise(bytes_.data(), whole_pages(bytes_.size()), MADV_REMOVE);
+}
+
 void PagedBlock::leave_memory() const {
   // what was written stays in the file: its pages are shared with it
   madvise(bytes_.data(), whole_pages(bytes_.size()), MADV_DONTNEED);

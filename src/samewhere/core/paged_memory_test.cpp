@@ -88,6 +88,20 @@ TEST(PagedMemory, ABlockOutlivesTheMemoryItCameFrom) {
   EXPECT_EQ(block->bytes()[99], std::byte{7});
 }
 
+TEST(PagedMemory, ABlockThatGoesLeavesAHoleInItsFile) {
+  PagedMemory memory;
+  auto block = memory.allocate(kMebibyte);
+  const auto neighbour = memory.allocate(kMebibyte);  // keeps the file mapped
+  ASSERT_TRUE(block && neighbour);
+  std::fill(block->bytes().begin(), block->bytes().end(), std::byte{1});
+  std::fill(neighbour->bytes().begin(), neighbour->bytes().end(), std::byte{2});
+  const std::span<const std::byte> place = block->bytes();
+  block.reset();
+  EXPECT_EQ(std::count(place.begin(), place.end(), std::byte{0}), std::ssize(place));
+  EXPECT_EQ(neighbour->bytes().front(), std::byte{2});
+  EXPECT_EQ(neighbour->bytes().back(), std::byte{2});
+}
+
 TEST(PagedMemory, WithoutAFolderThereIsNone) {
   const TemporaryFolder folder("/nonexistent");
   PagedMemory memory;

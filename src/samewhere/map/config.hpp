@@ -169,11 +169,12 @@ inline void visit_schedule_fields(Config& config, core::FieldVisitor& visit) {
                  "added",
          .min = 1,
          .max = 100});
-  visit(
-      "keyframes_in_memory", config.keyframes_in_memory,
-      {.help = "the features of older ones lie in a file without a name and come back when needed",
-       .min = 1,
-       .max = 1000000});
+  visit("keyframes_in_memory", config.keyframes_in_memory,
+        {.help =
+             "the features of older ones, and landmarks that as many did not change, lie in files "
+             "without a name and come back when needed",
+         .min = 1,
+         .max = 1000000});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {

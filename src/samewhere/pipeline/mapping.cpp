@@ -60,7 +60,7 @@ void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) 
   full_bundles_.begin(map_);
   add_frames(message.frames);
   keep_map();
-  let_old_features_go();
+  let_old_leave_memory();
 }
 
 void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
@@ -213,8 +213,9 @@ void Mapping::apply(scene::Edit edit) {
 
 // What fusing, bundles and the judge of loops have looked at since comes back, and goes again at
 // the next round.
-void Mapping::let_old_features_go() const {
+void Mapping::let_old_leave_memory() {
   const auto num_kept = static_cast<std::size_t>(config_.map.keyframes_in_memory);
+  landmark_pages_.step(map_.landmarks, num_kept);
   const std::size_t num_keyframes = map_.keyframes.size();
   if (num_keyframes <= num_kept) return;
   const std::size_t num_old = num_keyframes - num_kept;

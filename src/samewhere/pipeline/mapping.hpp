@@ -8,6 +8,7 @@
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/full_bundles.hpp>
 #include <samewhere/pipeline/messages.hpp>
+#include <samewhere/scene/landmark_pages.hpp>
 
 namespace samewhere::pipeline {
 
@@ -60,7 +61,7 @@ class Mapping {
   void add_frames(const std::vector<core::FramePose>& frames);
   void keep_map();
   void apply(scene::Edit edit);
-  void let_old_features_go() const;
+  void let_old_leave_memory();
 
   Config config_;
   core::Timings timings_;
@@ -69,6 +70,7 @@ class Mapping {
   KeepMap keep_map_;
   scene::MapVersion map_;
   core::PagedMemory feature_memory_;
+  scene::LandmarkPages landmark_pages_;
   std::uint64_t withdrawn_at_ = 0;  // MapVersion::number when a loop was withdrawn last
   int num_unheard_ = 0;             // questions to loop closing whose answers are to come
   MapNews news_;                    // since the map was kept

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <samewhere/core/errors.hpp>
@@ -17,23 +19,38 @@ class ChunkedVector {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
+  using Chunk = std::array<T, kChunkSize>;
+
   const T& operator[](std::size_t i) const {
     core::require(i < size_, "a ChunkedVector is read inside its size");
-    return (*chunks_[i / kChunkSize])[i % kChunkSize];
+    return (*chunks_[i / kChunkSize].elements)[i % kChunkSize];
   }
   const T& back() const { return (*this)[size_ - 1]; }
-
-  // Whether element i of both is one and the same, and so equal without a look at it.
-  bool shares_memory(const ChunkedVector& other, std::size_t i) const {
-    return &(*this)[i] == &other[i];
-  }
 
   // The element, to be written.
   T& edit(std::size_t i) {
     core::require(i < size_, "a ChunkedVector is written inside its size");
-    auto& chunk = chunks_[i / kChunkSize];
-    if (!is_held_alone(chunk)) chunk = std::make_shared<Chunk>(*chunk);
-    return (*chunk)[i % kChunkSize];
+    Held& chunk = chunks_[i / kChunkSize];
+    if (chunk.is_read_only || !is_held_alone(chunk.elements))
+      chunk = {std::make_shared<Chunk>(*chunk.elements)};
+    return (*chunk.elements)[i % kChunkSize];
+  }
+
+  // Elements come in chunks, of which the last may be filled in part.
+  std::size_t num_chunks() const { return chunks_.size(); }
+  const std::shared_ptr<Chunk>& chunk(std::size_t k) const { return chunks_[k].elements; }
+  // Where its elements begin and end.
+  std::pair<std::size_t, std::size_t> range_of_chunk(std::size_t k) const {
+    return {k * kChunkSize, std::min((k + 1) * kChunkSize, size_)};
+  }
+  // Whether chunk k of both is one and the same, and so equal without a look at it.
+  bool shares_chunk(const ChunkedVector& other, std::size_t k) const {
+    return chunk(k) == other.chunk(k);
+  }
+
+  // Equal elements that lie elsewhere, where nobody writes to them: who edits one gets a copy.
+  void put_read_only(std::size_t k, const std::shared_ptr<Chunk>& elements) {
+    chunks_[k] = {elements, true};
   }
 
   // Drops the elements from `size` on.
@@ -44,13 +61,16 @@ class ChunkedVector {
   }
 
   void push_back(T value) {
-    if (size_ % kChunkSize == 0) chunks_.push_back(std::make_shared<Chunk>());
+    if (size_ % kChunkSize == 0) chunks_.push_back({std::make_shared<Chunk>()});
     ++size_;
     edit(size_ - 1) = std::move(value);
   }
 
  private:
-  using Chunk = std::array<T, kChunkSize>;
+  struct Held {
+    std::shared_ptr<Chunk> elements;
+    bool is_read_only = false;
+  };
 
   // To look at the count alone would not be enough: taking a share and giving it back makes all
   // that another thread read, before it dropped its own, happen before what is written next.
@@ -59,7 +79,7 @@ class ChunkedVector {
     return std::shared_ptr<Chunk>(chunk).use_count() == kOwnAndThis;
   }
 
-  std::vector<std::shared_ptr<Chunk>> chunks_;
+  std::vector<Held> chunks_;
   std::size_t size_ = 0;
 };
 

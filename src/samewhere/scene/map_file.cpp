@@ -238,10 +238,11 @@ namespace {
 // Calls use(before, now) for each element of `after` that may not be as in `before` (nullptr: new).
 template <class T, class Use>
 void each_change(const ChunkedVector<T>& before, const ChunkedVector<T>& after, const Use& use) {
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    const bool is_known = i < before.size();
-    if (is_known && after.shares_memory(before, i)) continue;
-    use(is_known ? &before[i] : nullptr, after[i]);
+  for (std::size_t k = 0; k < after.num_chunks(); ++k) {
+    if (k < before.num_chunks() && after.shares_chunk(before, k)) continue;
+    const auto [begin, end] = after.range_of_chunk(k);
+    for (std::size_t i = begin; i < end; ++i)
+      use(i < before.size() ? &before[i] : nullptr, after[i]);
   }
 }
 
@@ -291,11 +292,10 @@ void MapFile::Content::write_loops(const char* table, const std::vector<LoopEdge
 }
 
 void MapFile::Content::write_merges(const MapVersion& after, State& state) {
-  for (std::size_t i = 0; i < after.merges.size(); ++i) {
-    if (i < map_.merges.size() && after.merges.shares_memory(map_.merges, i)) continue;
-    const Merge* before = i < map_.merges.size() ? &map_.merges[i] : nullptr;
-    put_change(kMerge, static_cast<std::int64_t>(i), before, after.merges[i]);
-  }
+  std::int64_t number = 0;
+  each_change(map_.merges, after.merges, [&](const Merge* before, const Merge& now) {
+    put_change(kMerge, number, before, now);
+  });
   file_.remove_from(kMerge, static_cast<std::int64_t>(after.merges.size()));
   state.num_merges = after.merges.size();
 }

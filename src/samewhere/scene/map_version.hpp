@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -35,9 +36,9 @@ struct Landmark {
   double weight = 0.0;           // sum of the inverse variances of its depths
   OrbDescriptor descriptor{};    // as seen last
   std::array<std::uint8_t, 3> rgb{};
-  std::vector<Observation> observations;  // one per keyframe at most
-  core::LandmarkId merged_into;           // valid: the same point as that one, see Merge
-  bool is_culled = false;                 // found to be no good; only its id lives on
+  std::pmr::vector<Observation> observations;  // one per keyframe at most
+  core::LandmarkId merged_into;                // valid: the same point as that one, see Merge
+  bool is_culled = false;                      // found to be no good; only its id lives on
 };
 
 // Whether the landmark is part of the map today.
