@@ -95,27 +95,34 @@ pipeline::MapPlan map_plan(const RunCommand& command, const std::filesystem::pat
   return {.known = command.map, .is_known_fixed = command.localize, .begin = std::move(begin)};
 }
 
-// Who runs a camera knows that frames may be lost.
-void require_realtime_as_told(const RunCommand& command, bool is_live) {
-  if (is_live == command.is_realtime) return;
-  throw core::InputError(
-      command.source +
-      (is_live ? ": is a camera, whose frames come whether they are taken or not; expected "
-                 "--realtime, which drops what comes too fast and counts it"
-               : ": is a recording; --realtime is for a camera such as /dev/video0"));
+// Who runs a camera knows that frames may be lost; of pictures and rendered worlds none may, for
+// what is known about them counts by their positions.
+void require_realtime_as_told(const std::string& source, const core::SourceInfo& info,
+                              bool is_realtime) {
+  if (info.is_live && !is_realtime) {
+    throw core::InputError(source +
+                           ": is a camera, whose frames come whether they are taken or not; "
+                           "expected --realtime, which drops what comes too fast and counts it");
+  }
+  if (is_realtime && !info.is_live && !info.is_video) {
+    throw core::InputError(source +
+                           ": is neither a video nor a camera such as /dev/video0, of which "
+                           "--realtime (input.realtime) takes the newest frame");
+  }
 }
 
 int execute(const RunCommand& command, Work work) {
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
+  if (command.is_realtime) config.input.realtime = true;
   if (!command.camera.empty()) config.input.camera = command.camera;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);
   const std::filesystem::path folder =
       command.out.empty() ? unused_folder(command.source) : std::filesystem::path(command.out);
   auto source = pipeline::open_source(config);
-  require_realtime_as_told(command, source->info().is_live);
+  require_realtime_as_told(command.source, source->info(), config.input.realtime);
   if (work == Work::kSlam) pipeline::require_slam_input(source->info(), config);
   report::require_folder_for_results(folder, config.source);
   // when source and map are known to be good: a bad one leaves no folder behind, nor does it cost
@@ -160,7 +167,8 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       "camera file, as `samewhere calibrate` writes it: 3 rows of the camera matrix, then, "
       "where known, k1 k2 p1 p2 k3 and width height; without it the source's own");
   sub->add_flag("--realtime", command->is_realtime,
-                "for a camera: always the newest frame; says how many were dropped");
+                "a camera, or a video played at its own pace: always the newest frame; says how "
+                "many were dropped; two such runs need not agree");
   add_config_options(*sub, command->config);
   sub->add_flag_callback(
       "--measure-all",
@@ -183,6 +191,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "  samewhere run ~/data/fr1_room                      a TUM RGB-D folder with "
           "camera.txt\n"
           "  samewhere run walk.mp4 --camera camera.txt         a video\n"
+          "  samewhere run walk.mp4 --camera camera.txt --realtime  played, as a camera sees it\n"
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
           "  samewhere run today --map runs/kitchen/map.sw --localize  where was this, in that "
           "map?");

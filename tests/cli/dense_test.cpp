@@ -86,6 +86,20 @@ TEST_F(Dense, WritesAllThreeIntoTheRunAndTheSameBytesAgain) {
   }
 }
 
+TEST_F(Dense, FindsTheDepthOfAStereoRunInItsPictures) {
+  const auto of_twin = [&](const std::string& arguments) {
+    return run_program(arguments + quoted(path("pair")), folder_.root());
+  };
+  const std::string walk = "twin:office-loop?seed=2&camera=";
+  const Outcome made = of_twin(fmt::format("run '{}stereo' --set twin.num_frames=6 --out ", walk));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Outcome fused = of_twin("dense ");
+  ASSERT_EQ(fused.exit_code, 0) << fused.err;
+  for (const char* name : {"pair/cloud.ply", "pair/map.bt"}) EXPECT_TRUE(is_there(name)) << name;
+  const std::string of_one_camera = "dense --set 'source=" + walk + "mono' ";
+  expect_clear_error(of_twin(of_one_camera), {"neither depth images nor a second camera"});
+}
+
 TEST_F(Dense, WritesOnlyWhatIsAskedFor) {
   const Outcome outcome =
       run("--octree " + quoted(path("new/tree.bt")) + " --set dense.octree_voxel_m=0.2");

@@ -1,6 +1,7 @@
 // Checkerboards, videos and cameras on the command line.
 
 #include <algorithm>
+#include <chrono>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,7 +16,9 @@
 namespace samewhere::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 
 class InputCommands : public testing::Test {
  protected:
@@ -36,6 +39,13 @@ class InputCommands : public testing::Test {
   }
   void write_board(const std::string& name, const Eigen::Vector3d& turn_rad) const {
     folder_.write_png(name, rendered_board(turn_rad, {0.0, 0.0, 0.24}));
+  }
+
+  // Four pictures in 0.4 s.
+  void write_video(const std::string& name) const {
+    cv::VideoWriter writer(path(name).string(), cv::CAP_OPENCV_MJPEG,
+                           cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, {64, 48});
+    for (int i = 0; i < 4; ++i) writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(60 * i)));
   }
 
   static void expect_one_line(const Outcome& outcome, const std::string& words) {
@@ -89,16 +99,43 @@ TEST_F(InputCommands, CalibrateRefusesBoardsThatAllFaceTheCamera) {
 }
 
 TEST_F(InputCommands, LoopsLooksThroughAVideo) {
-  cv::VideoWriter writer(path("walk.avi").string(), cv::CAP_OPENCV_MJPEG,
-                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, {64, 48});
-  for (int i = 0; i < 4; ++i) writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(60 * i)));
-  writer.release();
+  write_video("walk.avi");
   const std::string rest = " --set retrieve.window_frames=0 --out " + quoted(path("out"));
   const Outcome outcome = run("loops " + quoted(path("walk.avi")) + rest);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(std::filesystem::exists(path("out/matches.txt")));
-  expect_one_line(run("loops " + quoted(path("walk.avi")) + rest + " --realtime"),
-                  "is a recording; --realtime is for a camera");
+  EXPECT_THAT(outcome.out, Not(HasSubstr("frames dropped")));
+}
+
+TEST_F(InputCommands, LoopsPlaysAVideoAndTellsWhatWasDropped) {
+  write_video("walk.avi");
+  const Outcome outcome =
+      run("loops " + quoted(path("walk.avi")) + " --realtime --out " + quoted(path("out")));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("frames dropped  *[0-3]\n"));
+  EXPECT_TRUE(std::filesystem::exists(path("out/matches.txt")));
+  EXPECT_THAT(core::read_file(path("out/config.yaml")), HasSubstr("realtime: true"));
+}
+
+TEST_F(InputCommands, CtrlCDoesNotWaitForTheNextPictureThatIsPlayed) {
+  write_video("walk.avi");
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome cut =
+      interrupt_program("loops " + quoted(path("walk.avi")) +
+                            " --realtime --set input.fps=0.005 --out " + quoted(path("out")),
+                        "[ -e " + quoted(path("out/config.yaml")) + " ]", folder_.root());
+  EXPECT_EQ(cut.exit_code, 130) << cut.err;
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(100))
+      << "the next is due after 200 s";
+  EXPECT_TRUE(std::filesystem::exists(path("out/report.html")));
+}
+
+TEST_F(InputCommands, WhatIsNoVideoAndNoCameraIsNotPlayed) {
+  folder_.write_png("pictures/1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(90)));
+  const std::string rest = " --realtime --out " + quoted(path("out"));
+  for (const std::string& source : {quoted(path("pictures")), std::string("twin:office-loop")})
+    expect_one_line(run("loops " + source + rest), "is neither a video nor a camera");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
 TEST_F(InputCommands, WhatIsNoVideoOrNoCameraIsOneLine) {

@@ -1,5 +1,7 @@
 // A run in the map of an earlier one: what it tells, what is refused, and that nothing is lost.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,6 +31,7 @@ class KnownMap : public testing::Test {
     const Outcome refused = run(arguments);
     EXPECT_EQ(refused.exit_code, 2) << arguments;
     EXPECT_THAT(refused.err, HasSubstr(why));
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
   }
 
   input::TestFolder folder_;
@@ -55,6 +58,21 @@ TEST_F(KnownMap, AMapThatCannotBeUsedCostsNoEarlierResults) {
                  "a/map.sw: the map was made with features.num_features = 1000");
   EXPECT_EQ(core::read_file(path("a/trajectory.tum")), trajectory);
   EXPECT_EQ(run(fmt::format("map {} info", in("a/map.sw"))).exit_code, 0);
+}
+
+TEST_F(KnownMap, OfAnotherCameraOrAnotherDescriberIsRefused) {
+  const std::string again = fmt::format("--map {} --out {}", in("a/map.sw"), in("b"));
+  expect_refused(fmt::format("run {} {} --set describe.hog.cell_px=40", kWalk, again),
+                 "a/map.sw: the map was made with describer = ");
+  expect_refused(fmt::format("run {} {} --set describe.method=autoencoder", kWalk, again),
+                 "a/map.sw: the map was made with describer = ");
+  ASSERT_EQ(run(fmt::format("twin {} --out {}", kWalk, in("d"))).exit_code, 0);
+  const std::string as_recorded = fmt::format("run {} {}", in("d"), again);
+  folder_.write("other.txt", "600 0 319.5\n0 600 239.5\n0 0 1\n");
+  expect_refused(fmt::format("{} --camera {}", as_recorded, in("other.txt")),
+                 "a/map.sw: the map was made with camera 0 = 640 x 480 pixels, focal lengths ");
+  EXPECT_FALSE(std::filesystem::exists(path("b")));
+  EXPECT_EQ(run(as_recorded).exit_code, 0) << "the same pictures with their own camera";
 }
 
 TEST_F(KnownMap, DoesNotGrowByARunWithoutItsDepth) {

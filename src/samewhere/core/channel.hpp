@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -39,6 +40,14 @@ class Channel {
     messages_.push_back(std::move(message));
     changed_.notify_all();
     return true;
+  }
+
+  // Waits so long, or until the channel is closed: then false. For a writer whose message is not
+  // due.
+  bool is_open_for(double seconds) {
+    std::unique_lock lock(mutex_);
+    return !changed_.wait_for(lock, std::chrono::duration<double>(seconds),
+                              [&] { return is_closed_; });
   }
 
   // Nothing if the channel is closed and empty.

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <memory>
 #include <numeric>
 #include <vector>
@@ -43,6 +44,18 @@ TEST(Channel, TheNewestTakesThePlaceOfWhatWaits) {
   EXPECT_FALSE(channel.send_newest(6));
   EXPECT_EQ(channel.receive(), 5);
   EXPECT_EQ(channel.receive(), std::nullopt);
+}
+
+TEST(Channel, AWriterThatWaitsForItsTimeIsToldAtOnceThatNobodyListens) {
+  Channel<int> channel(1);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_TRUE(channel.is_open_for(0.02));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(20));
+  Channel<bool> is_told(1);
+  WorkerThread writer([&] { is_told.send(channel.is_open_for(3600.0)); });
+  EXPECT_TRUE(channel.send(1)) << "who waits keeps nobody else";
+  channel.close();
+  EXPECT_EQ(is_told.receive(), false);
 }
 
 TEST(Channel, AWriterNeverRunsAheadOfItsReaderByMoreThanTheCapacity) {

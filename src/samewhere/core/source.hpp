@@ -16,6 +16,7 @@ struct SourceInfo {
   int num_cameras = 1;     // images of a frame
   bool is_calibrated = false;
   bool is_live = false;        // a camera: frames come whether they are asked for or not
+  bool is_video = false;       // a file that may be played as if it were live
   double frame_rate_hz = 0.0;  // 1 / median time between frames; 0 for a single frame
 };
 

@@ -12,6 +12,7 @@ struct Config {
   double depth_factor = 0.0;  // depth units per metre; 0: the format's own
   double max_stamp_difference_s = 0.02;
   bool depth = true;
+  bool realtime = false;  // of a camera, or of a video that is played, the newest frame
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
@@ -31,6 +32,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .max = 1.0});
   visit("depth", config.depth,
         {.help = "whether depth images are read; without them a recording is monocular"});
+  visit("realtime", config.realtime,
+        {.help = "a camera, or a video that is played at its own pace: always the newest frame; "
+                 "what comes too fast is dropped, so that two runs need not agree"});
 }
 
 }  // namespace samewhere::input

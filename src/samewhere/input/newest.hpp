@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include <samewhere/core/source.hpp>
@@ -11,5 +12,15 @@ namespace samewhere::input {
 // count the frames given. An exception of the source comes out of next() after what it gave before.
 // For sources without inertial samples: those of a dropped frame would be lost.
 std::unique_ptr<core::Source> newest(std::unique_ptr<core::Source> source);
+
+// Waits until so many seconds have passed since its first call. False: the frame that was to come
+// then shall not come, nor any after it.
+using WaitUntil = std::function<bool(double since_first_s)>;
+
+// The same for a recording, as if it were live: each frame comes as long after the first as its
+// stamp is, or as soon as it can be read, and the first when somebody asks for it. After Ctrl-C no
+// more come, however long the next would have been waited for. Of a source whose frames nobody
+// knows by their position: truth() is that of all frames. An empty `wait` goes by the clock.
+std::unique_ptr<core::Source> played(std::unique_ptr<core::Source> source, WaitUntil wait = {});
 
 }  // namespace samewhere::input

@@ -93,6 +93,7 @@ class VideoSource : public core::Source {
              .num_frames = claim_.num_frames,
              .is_calibrated = rig_->is_calibrated(),
              .is_live = is_live,
+             .is_video = !is_live,
              .frame_rate_hz = fps_ > 0.0 ? fps_ : claim_.rate_hz};
   }
 

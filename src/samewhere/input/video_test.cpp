@@ -68,6 +68,7 @@ TEST_F(Video, PicturesComeInOrderWithTheStampsOfTheFile) {
   EXPECT_EQ(source->info().num_frames, kNumFrames);
   EXPECT_FALSE(source->info().is_calibrated);
   EXPECT_FALSE(source->info().is_live);
+  EXPECT_TRUE(source->info().is_video);
   EXPECT_NEAR(source->info().frame_rate_hz, 10.0, 1e-9);
   std::vector<core::Frame> frames;
   while (auto frame = source->next()) frames.push_back(*std::move(frame));

@@ -43,7 +43,7 @@ class FrameFeed {
       : source_(source), outcome_(outcome), progress_("frames", source.info().num_frames) {}
 
   std::optional<core::Frame> next() {
-    if (num_given_ > 0) progress_.update(num_given_);
+    if (num_given_ > 0) progress_.update(num_given_ + num_dropped_);
     outcome_.record.is_interrupted = core::is_interrupted();
     if (outcome_.record.is_interrupted) return std::nullopt;
     try {
@@ -51,6 +51,8 @@ class FrameFeed {
       ++num_given_;
       std::optional<core::Frame> frame = source_.next();
       if (frame) num_dropped_ += frame->num_dropped_before;
+      // or while it was waited for
+      if (!frame) outcome_.record.is_interrupted = core::is_interrupted();
       return frame;
     } catch (const core::InputError& error) {
       outcome_.record.input_error = error.what();
@@ -58,7 +60,7 @@ class FrameFeed {
     }
   }
 
-  // When all frames were given: how long they took to come, and what a camera lost meanwhile.
+  // When all frames were given: how long they took to come, and what was dropped meanwhile.
   void report() const {
     report::RunRecord& record = outcome_.record;
     record.timings.add(timings_);
@@ -76,10 +78,12 @@ class FrameFeed {
   int num_dropped_ = 0;
 };
 
-// Read ahead in a thread of its own: one frame, or of a camera the newest.
-std::unique_ptr<core::Source> read_ahead(std::unique_ptr<core::Source> source) {
-  const bool is_live = source->info().is_live;
-  return is_live ? input::newest(std::move(source)) : input::prefetched(std::move(source));
+// Read ahead in a thread of its own: one frame, or in real time the newest.
+std::unique_ptr<core::Source> read_ahead(std::unique_ptr<core::Source> source,
+                                         const Config& config) {
+  if (source->info().is_live) return input::newest(std::move(source));
+  return config.input.realtime ? input::played(std::move(source))
+                               : input::prefetched(std::move(source));
 }
 
 void record_frames(const Slam& slam, const std::vector<std::string>& names,
@@ -161,7 +165,7 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& given,
                     const MapPlan& plan) {
-  const auto source = read_ahead(std::move(unbuffered));
+  const auto source = read_ahead(std::move(unbuffered), given);
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
   const Config config = with_window_in_frames(given, source->info());
@@ -190,7 +194,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
 }
 
 RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given) {
-  const auto source = read_ahead(std::move(unbuffered));
+  const auto source = read_ahead(std::move(unbuffered), given);
   const core::Truth truth = source->truth();
   Config config = with_window_in_frames(given, source->info());
   config.verify.require_pose = false;  // there is no map that could use one

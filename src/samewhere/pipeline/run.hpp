@@ -24,9 +24,9 @@ struct RunOutcome {
 };
 
 // SLAM over a source, read one frame ahead in its own thread, with a progress line on stderr. Of a
-// camera (is_live) always the newest frame; how many were dropped is a figure. Stops early at
-// Ctrl-C. Throws InputError if the source lacks the camera file that SLAM needs, or if the known
-// map cannot be used or was made with other settings.
+// camera (is_live), or a recording that is played (input.realtime), always the newest frame; how
+// many were dropped is a figure. Stops early at Ctrl-C. Throws InputError if the source lacks the
+// camera file that SLAM needs, or if the known map cannot be used or was made with other settings.
 RunOutcome run_slam(std::unique_ptr<core::Source> source, const Config& config,
                     const MapPlan& plan = {});
 

@@ -126,6 +126,34 @@ TEST(Slam, OneCameraStartsLateAndThenFollowsTheTruthUpToScale) {
   EXPECT_LT(error->rmse_m, 0.03);
 }
 
+TEST(Slam, TwoCamerasStartFromOneFrameAndGiveTheSameBitsInThreadsAndInTurn) {
+  cv::setNumThreads(1);
+  Config config = short_walk();
+  config.source = "twin:office-loop?seed=5&camera=stereo";
+  const auto source = open_source(config);
+  ASSERT_EQ(source->info().num_cameras, 2);
+  ASSERT_FALSE(source->info().has_depth);
+  Slam in_threads(config);
+  config.threads = false;
+  Slam in_turn(config);
+  while (const auto frame = source->next()) {
+    in_threads.feed(*frame);
+    in_turn.feed(*frame);
+  }
+  in_threads.finish();
+  in_turn.finish();
+  ASSERT_FALSE(in_turn.map().keyframes.empty());
+  EXPECT_EQ(in_turn.map().keyframes[0].view.frame, core::FrameId(0));
+  const core::Trajectory trajectory = trajectory_of(in_turn.map(), in_turn.frames());
+  EXPECT_EQ(trajectory.size(), static_cast<std::size_t>(config.twin.num_frames));
+  const auto error =
+      evaluate::ate(source->truth().trajectory, trajectory, evaluate::Alignment::kSe3);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->rmse_m, 0.03);
+  EXPECT_FALSE(in_turn.map().loops.empty());
+  expect_same_bits(in_threads, in_turn);
+}
+
 // A config in which nothing is as published.
 Config unpublished() {
   Config config;
