@@ -235,14 +235,15 @@ StoredMap MapFile::Content::load() {
 
 namespace {
 
-// Calls use(before, now) for each element of `after` that may not be as in `before` (nullptr: new).
+// Calls use(i, before, now) for each element of `after` that may not be as in `before` (nullptr:
+// new).
 template <class T, class Use>
 void each_change(const ChunkedVector<T>& before, const ChunkedVector<T>& after, const Use& use) {
   for (std::size_t k = 0; k < after.num_chunks(); ++k) {
     if (k < before.num_chunks() && after.shares_chunk(before, k)) continue;
     const auto [begin, end] = after.range_of_chunk(k);
     for (std::size_t i = begin; i < end; ++i)
-      use(i < before.size() ? &before[i] : nullptr, after[i]);
+      use(static_cast<std::int64_t>(i), i < before.size() ? &before[i] : nullptr, after[i]);
   }
 }
 
@@ -266,20 +267,21 @@ std::uint64_t MapFile::Content::rig_number(const core::Rig& rig, State& state) {
 }
 
 void MapFile::Content::write_keyframes(const MapVersion& after, State& state) {
-  each_change(map_.keyframes, after.keyframes, [&](const Keyframe* before, const Keyframe& now) {
-    const auto number = static_cast<std::int64_t>(now.id.index());
-    put_change(kKeyframe, number, before, now);
-    put_change(kSlots, number, before ? &before->slots : nullptr, now.slots);
-    if (before == nullptr)
-      file_.put(kView, number, view_bytes(now.view, rig_number(*now.view.rig, state)));
-  });
+  each_change(map_.keyframes, after.keyframes,
+              [&](std::int64_t number, const Keyframe* before, const Keyframe& now) {
+                put_change(kKeyframe, number, before, now);
+                put_change(kSlots, number, before ? &before->slots : nullptr, now.slots);
+                if (before == nullptr)
+                  file_.put(kView, number, view_bytes(now.view, rig_number(*now.view.rig, state)));
+              });
   state.num_keyframes = after.keyframes.size();
 }
 
 void MapFile::Content::write_landmarks(const MapVersion& after, State& state) {
-  each_change(map_.landmarks, after.landmarks, [&](const Landmark* before, const Landmark& now) {
-    put_change(kLandmark, static_cast<std::int64_t>(now.id.index()), before, now);
-  });
+  each_change(map_.landmarks, after.landmarks,
+              [&](std::int64_t number, const Landmark* before, const Landmark& now) {
+                put_change(kLandmark, number, before, now);
+              });
   state.num_landmarks = after.landmarks.size();
 }
 
@@ -292,10 +294,10 @@ void MapFile::Content::write_loops(const char* table, const std::vector<LoopEdge
 }
 
 void MapFile::Content::write_merges(const MapVersion& after, State& state) {
-  std::int64_t number = 0;
-  each_change(map_.merges, after.merges, [&](const Merge* before, const Merge& now) {
-    put_change(kMerge, number, before, now);
-  });
+  each_change(map_.merges, after.merges,
+              [&](std::int64_t number, const Merge* before, const Merge& now) {
+                put_change(kMerge, number, before, now);
+              });
   file_.remove_from(kMerge, static_cast<std::int64_t>(after.merges.size()));
   state.num_merges = after.merges.size();
 }
