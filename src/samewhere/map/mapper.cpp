@@ -177,6 +177,7 @@ scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracke
                        pose.information};
   keyframe.log_scale = map.at(holder.keyframe).log_scale;
   std::vector<bool> is_taken(keyframe.slots.size(), false);
+  for (const int feature : tracked.passing) is_taken[static_cast<std::size_t>(feature)] = true;
   std::vector<scene::Sighting> sightings;
   std::set<core::LandmarkId> seen;
   for (const auto& [feature, landmark] : tracked.landmarks) {

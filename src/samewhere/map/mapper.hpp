@@ -15,6 +15,7 @@ struct TrackedView {
   features::View view;
   core::FramePose pose;
   std::vector<std::pair<int, core::LandmarkId>> landmarks;  // feature, landmark
+  std::vector<int> passing;  // features of what moves, or may: they become no landmarks
 };
 
 // Two views without depth, how they stand to each other, and the points that both see.

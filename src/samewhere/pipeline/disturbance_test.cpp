@@ -1,13 +1,18 @@
 // What happens when the camera sees badly for a while.
 
+#include <algorithm>
 #include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utility.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <samewhere/core/random.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
 
@@ -110,6 +115,70 @@ TEST(Disturbance, InTwoSecondsOfDarkThereIsNoPoseAndThenThereIsARightOneAgain) {
   for (std::size_t i = 50; i <= 79; ++i) EXPECT_FALSE(outcome.is_measured[i]) << i;
   EXPECT_GE(outcome.num_measured, 80) << "of the 90 in light";
   EXPECT_EQ(outcome.num_right, outcome.num_measured);
+}
+
+TEST(Disturbance, WhereALampFailsTheDepthPicturesHoldThePose) {
+  const Outcome outcome = outcome_of([](core::Frame frame) {
+    if (is_between(frame, 50, 79)) frame.images[0].setTo(0);
+    return std::optional(frame);
+  });
+  EXPECT_EQ(outcome.num_measured, kNumFrames);
+  EXPECT_EQ(outcome.num_right, kNumFrames);
+}
+
+TEST(Disturbance, WhereTheyLeaveADirectionOpenThereIsNoPoseInTheDark) {
+  const Outcome outcome = outcome_of(
+      [](core::Frame frame) {
+        if (is_between(frame, 80, 109)) frame.images[0].setTo(0);
+        return std::optional(frame);
+      },
+      kRightFromAfar_m);
+  EXPECT_TRUE(outcome.is_measured[82]);
+  EXPECT_FALSE(outcome.is_measured[100]) << "down a corridor";
+  EXPECT_EQ(outcome.num_right, outcome.num_measured);
+}
+
+TEST(Disturbance, ABlurOfTenFramesCostsNoPose) {
+  for (const double sigma_px : {4.0, 16.0}) {
+    const Outcome outcome = outcome_of([&](core::Frame frame) {
+      cv::Mat& image = frame.images[0];
+      if (is_between(frame, 50, 59)) cv::GaussianBlur(image, image, {}, sigma_px);
+      return std::optional(frame);
+    });
+    EXPECT_EQ(outcome.num_measured, kNumFrames) << sigma_px;
+    EXPECT_EQ(outcome.num_right, kNumFrames) << sigma_px;
+  }
+}
+
+// Of which frames there is a pose, and how far they are off after the scale.
+std::pair<std::vector<bool>, double> without_depth(std::size_t first_dark, std::size_t last_dark) {
+  cv::setNumThreads(1);
+  Slam slam(walk_config(), DepthFrom::kMotion);
+  for (const core::Frame& frame : walk().frames) {
+    core::Frame dark = *darkened(copy_of(frame), first_dark, last_dark);
+    dark.depth_m.reset();
+    slam.feed(dark);
+  }
+  slam.finish();
+  std::vector<bool> is_measured;
+  for (const core::FramePose& pose : slam.frames()) is_measured.push_back(pose.is_measured);
+  const auto error = evaluate::ate(walk().truth, trajectory_of(slam.map(), slam.frames()),
+                                   evaluate::Alignment::kSim3);
+  return {is_measured, error ? error->rmse_m : 1e9};
+}
+
+TEST(Disturbance, WithoutDepthNothingIsInventedInTheDarkEither) {
+  const auto [is_measured, rmse_m] = without_depth(60, 74);
+  for (std::size_t i = 60; i <= 74; ++i) EXPECT_FALSE(is_measured[i]) << i;
+  EXPECT_GE(std::count(is_measured.begin(), is_measured.end(), true), 95) << "of the 105 in light";
+  EXPECT_LT(rmse_m, 0.05);
+}
+
+TEST(Disturbance, WithoutDepthAMapThatIsLostBeforeItIsLargeIsGivenUpForANewOne) {
+  const auto [is_measured, rmse_m] = without_depth(60, 89);
+  for (std::size_t i = 0; i <= 89; ++i) EXPECT_FALSE(is_measured[i]) << i;
+  EXPECT_GE(std::count(is_measured.begin(), is_measured.end(), true), 25) << "of the 30 after it";
+  EXPECT_LT(rmse_m, 0.05);
 }
 
 TEST(Disturbance, WithDepthAMapThatIsLostBeforeItIsLargeIsGivenUpForANewOne) {

@@ -5,6 +5,7 @@
 
 #include <samewhere/features/orb.hpp>
 #include <samewhere/pipeline/tracking.hpp>
+#include <samewhere/track/depth_alignment.hpp>
 #include <samewhere/track/drift_model.hpp>
 
 namespace samewhere::pipeline {
@@ -23,6 +24,13 @@ core::FramePose starting_pose(const features::View& view, core::KeyframeId keyfr
 
 bool is_weak(const map::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
+}
+
+bool are_apart(const core::Rigid3& a, const core::Rigid3& b) {
+  constexpr double kApart_m = 0.05;
+  constexpr double kApart_rad = 0.03;
+  const core::Rigid3 off = inverse(a) * b;
+  return off.translation.norm() > kApart_m || core::angle_rad(off.rotation) > kApart_rad;
 }
 
 bool has_lost_a_loop(const scene::MapVersion& before, const scene::MapVersion& after) {
@@ -71,6 +79,7 @@ void Tracking::feed(const core::Frame& frame) {
     tracked = locate(frame, view);
     frames_.push_back(tracked ? by_odometry(tracked->pose)
                               : core::FramePose{.frame = view.frame, .stamp_s = view.stamp_s});
+    if (tracked) passing_.see(frame, frames_.back());
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
   if (map::is_worth_keeping(map_, *tracked, config_.map)) keep(*tracked, frame.images[0]);
@@ -84,8 +93,8 @@ void Tracking::finish() {
 std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
                                                  const features::View& view) {
   if (map_.keyframes.empty()) return start(frame, view);
-  auto tracked = last_ ? locate_in_map(view) : relocalise(frame, view);
-  if (!tracked && !last_ && is_start_doubtful()) {
+  auto tracked = last_ ? locate_in_map(frame, view) : relocalise(frame, view);
+  if (!tracked && !last_ && is_start_doubtful(view.stamp_s)) {
     if (auto started = start_anew(frame, view)) return started;
   }
   num_lost_ = tracked ? 0 : num_lost_ + 1;
@@ -93,6 +102,7 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
     if (starter_) starter_->forget();
     follow(*tracked);
     remember(*tracked);
+    last_depth_m_ = frame.depth_m;
   } else {
     last_.reset();
     first_followed_ = num_keyframes_;
@@ -100,7 +110,8 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
   return tracked;
 }
 
-std::optional<map::TrackedView> Tracking::locate_in_map(const features::View& view) {
+std::optional<map::TrackedView> Tracking::locate_in_map(const core::Frame& frame,
+                                                        const features::View& view) {
   std::optional<map::TrackedView> best = track_from_last(view);
   if ((!best || is_weak(*best)) && under_way_) {
     see_kept();
@@ -112,7 +123,29 @@ std::optional<map::TrackedView> Tracking::locate_in_map(const features::View& vi
     see_kept();
     try_again(view, best);
   }
-  return best;
+  if (best && best->pose.num_inliers >= config_.track.sure_inliers) return best;
+  auto held = held_by_depth(frame, view);
+  const bool is_better = held && (!best || is_weak(*best) ||
+                                  are_apart(world_from(best->pose), world_from(held->pose)));
+  return is_better ? held : best;
+}
+
+std::optional<map::TrackedView> Tracking::held_by_depth(const core::Frame& frame,
+                                                        const features::View& view) const {
+  if (!frame.depth_m || !last_depth_m_ || local_map_.size() == 0) return std::nullopt;
+  const core::Camera& camera = view.rig->cameras[0];
+  const core::Rigid3& body_from_camera = view.rig->body_from_camera[0];
+  const core::Rigid3 camera_from_body = inverse(body_from_camera);
+  const auto aligned = track::align({*last_depth_m_, camera}, {*frame.depth_m, camera},
+                                    camera_from_body * last_from_next_ * body_from_camera,
+                                    config_.track.min_share_by_depth);
+  if (!aligned) return std::nullopt;
+  const core::Rigid3 reference_from_last =
+      inverse(world_from_body(map_, local_map_.reference)) * world_from(last_->pose);
+  const core::Rigid3 last_from_this =
+      body_from_camera * aligned->earlier_from_later * camera_from_body;
+  return tracked_view(
+      view, tracker_.track_at(view, local_map_, reference_from_last * last_from_this, *aligned));
 }
 
 std::optional<map::TrackedView> Tracking::track_from_last(const features::View& view) {
@@ -249,9 +282,15 @@ std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& fra
   return last_;
 }
 
-bool Tracking::is_start_doubtful() const {
-  return session_ == 0 && num_keyframes_ - num_given_up_ <
-                              static_cast<std::uint64_t>(config_.track.start.provisional_keyframes);
+bool Tracking::is_start_doubtful(double stamp_s) const {
+  if (session_ != 0) return false;
+  const track::StartConfig& config = config_.track.start;
+  const bool is_small =
+      num_keyframes_ - num_given_up_ < static_cast<std::uint64_t>(config.provisional_keyframes);
+  const core::FramePose* last = last_measured();
+  if (is_small || starter_ || last == nullptr) return is_small;
+  const double followed_s = last->stamp_s - started_at_s_;
+  return followed_s < config.provisional_s && stamp_s - last->stamp_s > followed_s;
 }
 
 std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
@@ -286,10 +325,11 @@ void Tracking::locate_passed(const std::vector<features::View>& views) {
 void Tracking::begin_tracking(const features::View& view, int num_landmarks) {
   map_ = wait_for_mapping().map;
   num_keyframes_ = map_.keyframes.size();
+  started_at_s_ = view.stamp_s;
   const core::KeyframeId newest = map_.keyframes.back().id;
   keyframe_of_[view.frame] = newest;
   look_around(newest);
-  last_ = map::TrackedView{view, starting_pose(view, newest, num_landmarks), {}};
+  last_ = map::TrackedView{view, starting_pose(view, newest, num_landmarks), {}, {}};
 }
 
 bool Tracking::can_promote_last() const {
@@ -307,6 +347,7 @@ void Tracking::keep(const map::TrackedView& tracked, const cv::Mat& image) {
   pose.reference_from_frame = core::Rigid3{};
   const std::size_t position = frames_.size() - 1;
   map::TrackedView followed = tracked;
+  followed.passing = passing_.shown_in(tracked.view, tracked.pose, map_);
   followed.pose = by_odometry(tracked.pose);
   mapping_.send(AddKeyframe{std::move(followed), image, unsent_frames()});
   under_way_ = {added, position + static_cast<std::size_t>(config_.map.visible_after_frames)};
@@ -344,7 +385,7 @@ core::Rigid3 Tracking::world_from(const core::FramePose& pose) const {
 
 map::TrackedView Tracking::tracked_view(const features::View& view,
                                         const track::Track& track) const {
-  map::TrackedView tracked{view, track.pose, {}};
+  map::TrackedView tracked{view, track.pose, {}, {}};
   tracked.pose.log_scale = map_.at(track.pose.reference_keyframe).log_scale;
   for (const auto& match : track.matches) {
     tracked.landmarks.emplace_back(match.second,

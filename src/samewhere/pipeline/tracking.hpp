@@ -11,6 +11,7 @@
 #include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/messages.hpp>
+#include <samewhere/pipeline/passing_things.hpp>
 #include <samewhere/pipeline/place_finder.hpp>
 #include <samewhere/scene/local_map.hpp>
 #include <samewhere/scene/map_file.hpp>
@@ -48,7 +49,12 @@ class Tracking {
  private:
   // Where am I? Nothing: lost.
   std::optional<map::TrackedView> locate(const core::Frame& frame, const features::View& view);
-  std::optional<map::TrackedView> locate_in_map(const features::View& view);
+  std::optional<map::TrackedView> locate_in_map(const core::Frame& frame,
+                                                const features::View& view);
+  // Where few features hold a pose or none, in the dark or before bare walls, the depth picture
+  // may: by what moved since the last frame's.
+  std::optional<map::TrackedView> held_by_depth(const core::Frame& frame,
+                                                const features::View& view) const;
   std::optional<map::TrackedView> track_from_last(const features::View& view);
   // The same again, if the map has got nearer; the better of both.
   void try_again(const features::View& view, std::optional<map::TrackedView>& best);
@@ -76,7 +82,7 @@ class Tracking {
   std::optional<map::TrackedView> start_by_motion(const core::Frame& frame,
                                                   const features::View& view);
   // Whether who is lost in this map may give it up for a new one.
-  bool is_start_doubtful() const;
+  bool is_start_doubtful(double stamp_s) const;
   // He does; with depth not at once: what hides the view may pass.
   std::optional<map::TrackedView> start_anew(const core::Frame& frame, const features::View& view);
   // No frame so far has a pose.
@@ -103,6 +109,7 @@ class Tracking {
   track::Tracker tracker_;
   track::Tracker lost_tracker_;
   PlaceFinder place_finder_;
+  PassingThings passing_;
   std::optional<track::Starter> starter_;  // one camera
   int num_with_depth_ = 0;                 // features of the last view that might have started
   MappingLink& mapping_;
@@ -113,6 +120,7 @@ class Tracking {
   scene::LocalMap local_map_;
   std::uint64_t num_keyframes_ = 0;   // sent to mapping, or there before
   std::uint64_t num_given_up_ = 0;    // of these, when the map began anew
+  double started_at_s_ = 0.0;         // stamp of the view that the map began with
   std::uint64_t first_followed_ = 0;  // tracking was not lost since this one
   struct Way {
     std::uint64_t map_number = 0;
@@ -132,6 +140,7 @@ class Tracking {
   std::size_t num_sent_frames_ = 0;
   std::optional<map::TrackedView> last_;  // the frame before, if it was located
   int num_lost_ = 0;                      // frames since then
+  std::optional<cv::Mat> last_depth_m_;   // of that frame
   core::Rigid3 last_from_next_;           // motion model: the last step once more
 };
 

@@ -43,6 +43,7 @@ struct StartConfig {
   double max_rival_ratio = 0.7;
   int max_waiting_frames = 300;
   int provisional_keyframes = 20;
+  double provisional_s = 5.0;
 };
 
 inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
@@ -81,6 +82,11 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
         {.help = "a map that is lost before it has so many keyframes is given up for a new start",
          .min = 0,
          .max = 10000});
+  visit("provisional_s", config.provisional_s,
+        {.help = "with depth also one that was followed for less, seconds, and is lost for longer: "
+                 "in a crowd every frame is a keyframe",
+         .min = 0.0,
+         .max = 3600.0});
   visit("max_rival_ratio", config.max_rival_ratio,
         {.help = "a second motion that explains this share of the best one's matches is ambiguity",
          .min = 0.1,
@@ -132,6 +138,7 @@ struct Config {
   int min_inliers = 15;
   int weak_inliers = 40;
   int sure_inliers = 100;
+  double min_share_by_depth = 0.9;
   LostConfig lost;
   StartConfig start;
   DriftConfig drift;
@@ -158,6 +165,12 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
          .min = 6,
          .max = 10000});
+  visit(
+      "min_share_by_depth", config.min_share_by_depth,
+      {.help = "where features hold a weak pose or none, this share of the depth picture must lie "
+               "on the surfaces of the one before, and holds it; above 1: never",
+       .min = 0.0,
+       .max = 1.1});
   visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});
   visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
   visit("drift", config.drift,

@@ -144,6 +144,27 @@ std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
   return best;
 }
 
+Track Tracker::track_at(const View& view, const LocalMap& map,
+                        const core::Rigid3& reference_from_body, const Alignment& alignment) const {
+  constexpr double kFar_m = 0.05;
+  constexpr double kFar_rad = 0.03;
+  const core::Rigid3 given = camera_from_reference(view, reference_from_body);
+  const std::vector<Match> matches =
+      search(view, map, reference_from_body, settings_.track.refine_radius_px);
+  const optimize::MotionProblem problem = motion_problem(view, map, matches);
+  const optimize::MotionResult refined = refine_pose(problem, given, settings_.optimize);
+  const core::Rigid3 step = refined.camera_from_world * inverse(given);
+  if (refined.num_inliers >= settings_.track.min_inliers && step.translation.norm() < kFar_m &&
+      core::angle_rad(step.rotation) < kFar_rad)
+    return make_track(view, map, matches, refined);
+  optimize::Config in_place = settings_.optimize;
+  in_place.motion_iterations = 0;
+  optimize::MotionResult held = refine_pose(problem, given, in_place);
+  held.num_inliers = std::min(held.num_inliers, settings_.track.weak_inliers - 1);
+  held.covariance = covariance_of_later(alignment, given);
+  return make_track(view, map, matches, held);
+}
+
 std::optional<Track> Tracker::track_anywhere(const View& view, const LocalMap& map) const {
   if (map.num_near == 0) return std::nullopt;  // nor has a matrix without rows any to cut from
   return solve(view, map,

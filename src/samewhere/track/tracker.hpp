@@ -10,6 +10,7 @@
 #include <samewhere/optimize/motion_only.hpp>
 #include <samewhere/scene/local_map.hpp>
 #include <samewhere/track/config.hpp>
+#include <samewhere/track/depth_alignment.hpp>
 
 namespace samewhere::track {
 
@@ -38,6 +39,11 @@ class Tracker {
   // then far.
   std::optional<Track> track(const features::View& view, const scene::LocalMap& map,
                              const core::Rigid3& guessed_reference_from_body) const;
+
+  // Where depth pictures put the body. The features that fit there refine the pose if they are
+  // enough and lead not far away; else it is the one given, and weak.
+  Track track_at(const features::View& view, const scene::LocalMap& map,
+                 const core::Rigid3& reference_from_body, const Alignment& alignment) const;
 
   // Without a guess: every near landmark may match every feature.
   std::optional<Track> track_anywhere(const features::View& view, const scene::LocalMap& map) const;

@@ -1,0 +1,44 @@
+#include <algorithm>
+
+#include <samewhere/pipeline/passing_things.hpp>
+
+namespace samewhere::pipeline {
+
+namespace {
+
+// Somebody who walks is beside himself after a quarter of a second, and elsewhere after one.
+constexpr double kInterval_s = 0.25;
+constexpr std::size_t kNumSeen = 4;
+
+}  // namespace
+
+void PassingThings::see(const core::Frame& frame, const core::FramePose& pose) {
+  if (!frame.depth_m) return;
+  if (!seen_.empty() && frame.stamp_s < seen_.back().pose.stamp_s + kInterval_s) return;
+  if (seen_.size() == kNumSeen) seen_.pop_front();
+  seen_.push_back({pose, frame.rig->body_from_camera[0],
+                   track::NearestSurface(*frame.depth_m, frame.rig->cameras[0])});
+}
+
+std::vector<int> PassingThings::shown_in(const features::View& view, const core::FramePose& pose,
+                                         const scene::MapVersion& map) const {
+  const core::Rigid3 world_from_camera =
+      world_from_frame(map, pose) * view.rig->body_from_camera[0];
+  std::vector<core::Rigid3> seen_from_camera;
+  for (const Seen& seen : seen_)
+    seen_from_camera.push_back(inverse(world_from_frame(map, seen.pose) * seen.body_from_camera) *
+                               world_from_camera);
+  std::vector<int> shown;
+  for (int i = 0; i < view.features->size(); ++i) {
+    const auto point = features::point_in_camera(view, i);
+    if (!point) continue;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if (!seen_[k].surface.sees_through(seen_from_camera[k] * *point)) continue;
+      shown.push_back(i);
+      break;
+    }
+  }
+  return shown;
+}
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include <samewhere/core/frame.hpp>
+#include <samewhere/core/frame_pose.hpp>
+#include <samewhere/features/features.hpp>
+#include <samewhere/scene/map_version.hpp>
+#include <samewhere/track/free_space.hpp>
+
+namespace samewhere::pipeline {
+
+// Where depth pictures of the last second saw nothing, something has come since: it moves, and is
+// not to be taken for part of the building.
+class PassingThings {
+ public:
+  // A frame with a pose; without depth nothing is remembered.
+  void see(const core::Frame& frame, const core::FramePose& pose);
+
+  // Features of the view that show what moves. The pose is its own.
+  std::vector<int> shown_in(const features::View& view, const core::FramePose& pose,
+                            const scene::MapVersion& map) const;
+
+ private:
+  struct Seen {
+    core::FramePose pose;
+    core::Rigid3 body_from_camera;
+    track::NearestSurface surface;
+  };
+  std::deque<Seen> seen_;  // oldest first
+};
+
+}  // namespace samewhere::pipeline

@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <samewhere/geometry/camera.hpp>
+#include <samewhere/optimize/manifold.hpp>
+#include <samewhere/track/depth_alignment.hpp>
+
+namespace samewhere::track {
+namespace {
+
+constexpr int kStep_px = 8;
+constexpr int kIterations = 20;
+constexpr double kConverged = 1e-5;
+constexpr double kTukey = 4.0;        // sigmas
+constexpr double kFirstTukey = 12.0;  // as the guess may be off
+constexpr double kMaxMisfit_m = 0.3;  // of a patch from the one it falls on
+constexpr int kMinPatches = 300;
+// Errors of neighbouring patches are alike: so many times less is known than if they were not.
+constexpr double kAlike = 10.0;
+constexpr double kMaxSigma_m = 0.03;
+constexpr double kMaxSigma_rad = 0.02;
+
+// Of the distance of a point from a plane: a sensor's error grows with the square of the depth.
+double sigma_m(double depth_m) { return 0.002 + 0.002 * depth_m * depth_m; }
+
+struct Equations {
+  core::Matrix6d hessian = core::Matrix6d::Zero();
+  core::Vector6d gradient = core::Vector6d::Zero();
+  int num_asked = 0;  // fall on a patch
+  int num_inliers = 0;
+};
+
+Equations linearise(const Surfaces& earlier, const Surfaces& later, const core::Rigid3& pose,
+                    double tukey) {
+  Equations sum;
+  for (const Surfaces::Patch& patch : later.patches()) {
+    if (patch.normal.isZero()) continue;
+    const Eigen::Vector3d rotated = pose.rotation * patch.point;
+    const Eigen::Vector3d point = rotated + pose.translation;
+    const Surfaces::Patch* on = earlier.at(point);
+    if (on == nullptr) continue;
+    ++sum.num_asked;
+    const Eigen::Vector3d misfit = point - on->point;
+    const double residual = on->normal.dot(misfit) / sigma_m(patch.point.z());
+    if (std::abs(residual) >= tukey || misfit.norm() > kMaxMisfit_m) continue;
+    ++sum.num_inliers;
+    const double root = 1.0 - (residual / tukey) * (residual / tukey);
+    core::Vector6d by_pose;
+    by_pose << on->normal, rotated.cross(on->normal);
+    by_pose /= sigma_m(patch.point.z());
+    sum.hessian += root * root * by_pose * by_pose.transpose();
+    sum.gradient += root * root * residual * by_pose;
+  }
+  return sum;
+}
+
+bool holds_all_directions(const core::Matrix6d& covariance) {
+  const auto largest = [](const Eigen::Matrix3d& block) {
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly)
+                         .eigenvalues()
+                         .maxCoeff());
+  };
+  return largest(covariance.topLeftCorner<3, 3>()) < kMaxSigma_m &&
+         largest(covariance.bottomRightCorner<3, 3>()) < kMaxSigma_rad;
+}
+
+}  // namespace
+
+Surfaces::Surfaces(const cv::Mat& depth_m, const core::Camera& camera)
+    : camera_(camera),
+      num_columns_(depth_m.cols / kStep_px),
+      num_rows_(depth_m.rows / kStep_px),
+      patches_(static_cast<std::size_t>(num_columns_) * static_cast<std::size_t>(num_rows_)) {
+  for (int row = 0; row < num_rows_; ++row) {
+    for (int column = 0; column < num_columns_; ++column) {
+      const int x = column * kStep_px + kStep_px / 2;
+      const int y = row * kStep_px + kStep_px / 2;
+      const auto z = static_cast<double>(depth_m.at<float>(y, x));
+      if (!(z > 0.0)) continue;
+      const Eigen::Vector3d ray = geometry::bearing(camera, Eigen::Vector2d(x, y));
+      patches_[static_cast<std::size_t>(row * num_columns_ + column)].point = ray * (z / ray.z());
+    }
+  }
+  add_normals();
+}
+
+void Surfaces::add_normals() {
+  constexpr double kMaxJump = 0.1;  // of the depth, to the neighbours
+  const auto point = [&](int row, int column) -> const Eigen::Vector3d& {
+    return patches_[static_cast<std::size_t>(row * num_columns_ + column)].point;
+  };
+  for (int row = 1; row + 1 < num_rows_; ++row) {
+    for (int column = 1; column + 1 < num_columns_; ++column) {
+      const Eigen::Vector3d& here = point(row, column);
+      const Eigen::Vector3d* around[] = {&point(row, column - 1), &point(row, column + 1),
+                                         &point(row - 1, column), &point(row + 1, column)};
+      const bool is_smooth =
+          here.z() > 0.0 && std::all_of(std::begin(around), std::end(around), [&](const auto* p) {
+            return p->z() > 0.0 && std::abs(p->z() - here.z()) < kMaxJump * here.z();
+          });
+      if (!is_smooth) continue;
+      const Eigen::Vector3d normal = (*around[1] - *around[0]).cross(*around[3] - *around[2]);
+      patches_[static_cast<std::size_t>(row * num_columns_ + column)].normal = normal.normalized();
+    }
+  }
+}
+
+const Surfaces::Patch* Surfaces::at(const Eigen::Vector3d& point_in_camera) const {
+  const auto pixel = geometry::project(camera_, point_in_camera);
+  if (!pixel) return nullptr;
+  const int column = static_cast<int>(std::floor(pixel->x() / kStep_px));
+  const int row = static_cast<int>(std::floor(pixel->y() / kStep_px));
+  if (row < 0 || column < 0 || row >= num_rows_ || column >= num_columns_) return nullptr;
+  const Patch& patch = patches_[static_cast<std::size_t>(row * num_columns_ + column)];
+  return patch.normal.isZero() ? nullptr : &patch;
+}
+
+std::optional<Alignment> align(const Surfaces& earlier, const Surfaces& later,
+                               const core::Rigid3& guessed_earlier_from_later, double min_share) {
+  core::Rigid3 pose = guessed_earlier_from_later;
+  for (int i = 0; i < kIterations; ++i) {
+    const double tukey = std::max(kTukey, kFirstTukey * std::pow(0.7, i));
+    const Equations sum = linearise(earlier, later, pose, tukey);
+    if (sum.num_inliers < kMinPatches) return std::nullopt;
+    core::Matrix6d damped = sum.hessian;
+    damped.diagonal().array() += 1e-6 * damped.diagonal().array().maxCoeff();
+    const core::Vector6d step = damped.ldlt().solve(-sum.gradient);
+    if (!step.allFinite()) return std::nullopt;
+    pose = optimize::retract(pose, step);
+    if (tukey == kTukey && step.norm() < kConverged) break;
+  }
+  const Equations sum = linearise(earlier, later, pose, kTukey);
+  Alignment found{pose, {}, static_cast<double>(sum.num_inliers) / std::max(sum.num_asked, 1)};
+  if (sum.num_inliers < kMinPatches || found.share_of_inliers < min_share) return std::nullopt;
+  found.covariance = kAlike * kAlike * sum.hessian.ldlt().solve(core::Matrix6d::Identity());
+  if (!found.covariance.allFinite() || !holds_all_directions(found.covariance)) return std::nullopt;
+  return found;
+}
+
+core::Matrix6d covariance_of_later(const Alignment& alignment,
+                                   const core::Rigid3& later_from_reference) {
+  const core::Rigid3 later_from_earlier = inverse(alignment.earlier_from_later);
+  const Eigen::Matrix3d turned = later_from_earlier.rotation.toRotationMatrix();
+  // where the reference is from the earlier camera, turned as the later one
+  const Eigen::Vector3d arm = later_from_reference.translation - later_from_earlier.translation;
+  core::Matrix6d by = core::Matrix6d::Zero();
+  by.topLeftCorner<3, 3>() = -turned;
+  by.bottomRightCorner<3, 3>() = -turned;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
+    by.col(3 + i).head<3>() =
+        turned * axis.cross(alignment.earlier_from_later.translation) - (turned * axis).cross(arm);
+  }
+  return by * alignment.covariance * by.transpose();
+}
+
+}  // namespace samewhere::track
