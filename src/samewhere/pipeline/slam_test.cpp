@@ -97,7 +97,10 @@ TEST(Slam, BlackFramesAreLostAndTheWalkResumesAfterThem) {
   const auto source = open_source(config);
   while (auto frame = source->next()) {
     const auto index = frame->id.index();
-    if (index == 10 || index == 11) frame->images[0] = cv::Mat::zeros(480, 640, CV_8UC3);
+    if (index == 10 || index == 11) {
+      frame->images[0] = cv::Mat::zeros(480, 640, CV_8UC3);
+      frame->depth_m = cv::Mat::zeros(480, 640, CV_32F);
+    }
     slam.feed(*frame);
   }
   slam.finish();
