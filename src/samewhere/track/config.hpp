@@ -46,6 +46,23 @@ struct StartConfig {
   double provisional_s = 5.0;
 };
 
+// When a start is given up.
+inline void visit_giving_up(StartConfig& config, core::FieldVisitor& visit) {
+  visit("max_waiting_frames", config.max_waiting_frames,
+        {.help = "frames after which a first view without a start gives up its place",
+         .min = 1,
+         .max = 100000});
+  visit("provisional_keyframes", config.provisional_keyframes,
+        {.help = "a map that is lost before it has so many keyframes is given up for a new start",
+         .min = 0,
+         .max = 10000});
+  visit("provisional_s", config.provisional_s,
+        {.help = "with depth also one that was followed for less, seconds, and is lost for longer: "
+                 "in a crowd every frame is a keyframe",
+         .min = 0.0,
+         .max = 3600.0});
+}
+
 inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
   visit("model", config.model,
         {.help = "of the two views, from which R and t are taken: the better of homography and "
@@ -74,23 +91,11 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
          .max = 1.0});
   visit("min_point_parallax_rad", config.min_point_parallax_rad,
         {.help = "matches with less parallax become no points, radians", .min = 0.0, .max = 1.0});
-  visit("max_waiting_frames", config.max_waiting_frames,
-        {.help = "frames after which a first view without a start gives up its place",
-         .min = 1,
-         .max = 100000});
-  visit("provisional_keyframes", config.provisional_keyframes,
-        {.help = "a map that is lost before it has so many keyframes is given up for a new start",
-         .min = 0,
-         .max = 10000});
-  visit("provisional_s", config.provisional_s,
-        {.help = "with depth also one that was followed for less, seconds, and is lost for longer: "
-                 "in a crowd every frame is a keyframe",
-         .min = 0.0,
-         .max = 3600.0});
   visit("max_rival_ratio", config.max_rival_ratio,
         {.help = "a second motion that explains this share of the best one's matches is ambiguity",
          .min = 0.1,
          .max = 1.0});
+  visit_giving_up(config, visit);
 }
 
 // Who has lost his place, and where he may be found.
