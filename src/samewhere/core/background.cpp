@@ -9,9 +9,10 @@ namespace samewhere::core {
 
 void work_in_background() {
 #ifdef __linux__
-  constexpr int kNice = 10;  // a tenth of the share of a thread of nice 0
-  // setpriority(2): on Linux of one thread, by its id
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  constexpr int kNicer = 10;  // a tenth of the share of the threads that it gives way to
+  // getpriority(2): on Linux of one thread, by its id; what lies beyond the range is cut to it
+  const auto self = static_cast<id_t>(gettid());
+  setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + kNicer);
 #endif
 }
 

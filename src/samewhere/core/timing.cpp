@@ -56,11 +56,19 @@ std::vector<double> Timings::durations_beside(const std::string& stage,
   return beside_ms;
 }
 
-double thread_processor_ms() {
+namespace {
+
+double read_ms(clockid_t clock) {
   timespec spent{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+  clock_gettime(clock, &spent);
   return 1e3 * static_cast<double>(spent.tv_sec) + 1e-6 * static_cast<double>(spent.tv_nsec);
 }
+
+}  // namespace
+
+double thread_processor_ms() { return read_ms(CLOCK_THREAD_CPUTIME_ID); }
+
+double process_processor_ms() { return read_ms(CLOCK_PROCESS_CPUTIME_ID); }
 
 std::optional<double> seconds_since_program_start() {
   // proc(5): the name of the program is in brackets and may hold anything; 19 fields after it, the

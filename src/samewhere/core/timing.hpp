@@ -55,8 +55,9 @@ class Timings {
   std::map<std::string, std::vector<Span>> spans_ms_;
 };
 
-// Processor time of the calling thread so far.
+// Processor time of the calling thread so far, and of all threads of this process.
 double thread_processor_ms();
+double process_processor_ms();
 
 // Adds the time from its construction to its destruction, both in one thread.
 class ScopedTimer {

@@ -47,7 +47,7 @@ class FrameFeed {
     outcome_.record.is_interrupted = core::is_interrupted();
     if (outcome_.record.is_interrupted) return std::nullopt;
     try {
-      const core::ScopedTimer timer(timings_, "wait for input");
+      const core::ScopedTimer timer(timings_, report::kWaitForInputStage);
       ++num_given_;
       std::optional<core::Frame> frame = source_.next();
       if (frame) num_dropped_ += frame->num_dropped_before;
@@ -154,6 +154,7 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   record.figures = figures_of(evaluation);
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"no start, at the end", slam.why_not_started()});
+  record.figures.push_back({"starts given up", fmt::format("{}", slam.num_starts_given_up())});
   record.figures.push_back(
       {"keyframes / landmarks",
        fmt::format("{} / {}", num_live(slam.map().keyframes), num_live(slam.map().landmarks))});

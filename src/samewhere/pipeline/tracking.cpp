@@ -75,7 +75,7 @@ void Tracking::feed(const core::Frame& frame) {
   {
     const core::ScopedTimer timer(timings_, "track");
     if (under_way_ && under_way_->due_at_frame <= frames_.size()) see_kept();
-    const features::View view = features::extract(frame, config_.features);
+    const features::View view = extract(frame);
     tracked = locate(frame, view);
     frames_.push_back(tracked ? by_odometry(tracked->pose)
                               : core::FramePose{.frame = view.frame, .stamp_s = view.stamp_s});
@@ -83,6 +83,11 @@ void Tracking::feed(const core::Frame& frame) {
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
   if (map::is_worth_keeping(map_, *tracked, config_.map)) keep(*tracked, frame.images[0]);
+}
+
+features::View Tracking::extract(const core::Frame& frame) {
+  const core::ScopedTimer timer(timings_, "features");
+  return features::extract(frame, config_.features);
 }
 
 void Tracking::finish() {
@@ -131,8 +136,9 @@ std::optional<map::TrackedView> Tracking::locate_in_map(const core::Frame& frame
 }
 
 std::optional<map::TrackedView> Tracking::held_by_depth(const core::Frame& frame,
-                                                        const features::View& view) const {
+                                                        const features::View& view) {
   if (!frame.depth_m || !last_depth_m_ || local_map_.size() == 0) return std::nullopt;
+  const core::ScopedTimer timer(timings_, "depth alignment");
   const core::Camera& camera = view.rig->cameras[0];
   const core::Rigid3& body_from_camera = view.rig->body_from_camera[0];
   const core::Rigid3 camera_from_body = inverse(body_from_camera);
@@ -302,6 +308,7 @@ std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
 
 // What was sent is sent again.
 void Tracking::give_up_poses() {
+  if (num_keyframes_ > num_given_up_) ++num_starts_given_up_;
   place_finder_.forget();
   for (auto& pose : frames_) pose = {.frame = pose.frame, .stamp_s = pose.stamp_s};
   keyframe_of_.clear();

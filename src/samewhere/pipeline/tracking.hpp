@@ -45,8 +45,11 @@ class Tracking {
   const core::Timings& timings() const { return timings_; }
   // Why the views tried last did not start a map.
   std::string why_not_started() const;
+  // How often the map was given up for a new one, with all poses found in it.
+  int num_starts_given_up() const { return num_starts_given_up_; }
 
  private:
+  features::View extract(const core::Frame& frame);
   // Where am I? Nothing: lost.
   std::optional<map::TrackedView> locate(const core::Frame& frame, const features::View& view);
   std::optional<map::TrackedView> locate_in_map(const core::Frame& frame,
@@ -54,7 +57,7 @@ class Tracking {
   // Where few features hold a pose or none, in the dark or before bare walls, the depth picture
   // may: by what moved since the last frame's.
   std::optional<map::TrackedView> held_by_depth(const core::Frame& frame,
-                                                const features::View& view) const;
+                                                const features::View& view);
   std::optional<map::TrackedView> track_from_last(const features::View& view);
   // The same again, if the map has got nearer; the better of both.
   void try_again(const features::View& view, std::optional<map::TrackedView>& best);
@@ -120,6 +123,7 @@ class Tracking {
   scene::LocalMap local_map_;
   std::uint64_t num_keyframes_ = 0;   // sent to mapping, or there before
   std::uint64_t num_given_up_ = 0;    // of these, when the map began anew
+  int num_starts_given_up_ = 0;
   double started_at_s_ = 0.0;         // stamp of the view that the map began with
   std::uint64_t first_followed_ = 0;  // tracking was not lost since this one
   struct Way {

@@ -57,5 +57,6 @@ struct RunRecord {
 
 // The name under which the pipeline times all work on one frame.
 inline constexpr const char* kWholeFrameStage = "frame";
+inline constexpr const char* kWaitForInputStage = "wait for input";
 
 }  // namespace samewhere::report

@@ -2,7 +2,6 @@
 #include <cstddef>
 #include <new>
 
-#include <samewhere/core/errors.hpp>
 #include <samewhere/scene/landmark_pages.hpp>
 
 namespace samewhere::scene {
@@ -46,10 +45,9 @@ class PagedChunk {
 }  // namespace
 
 void LandmarkPages::step(ChunkedVector<Landmark>& landmarks, std::size_t num_steps) {
-  core::require(num_steps > 0, "a round has steps");
   const std::size_t num_full = landmarks.size() / std::tuple_size_v<Chunk>;
   seen_.resize(num_full);
-  const std::size_t num_visits = (num_full + num_steps - 1) / num_steps;
+  const std::size_t num_visits = num_steps > 1 ? (num_full + num_steps - 1) / num_steps : num_full;
   for (std::size_t i = 0; i < num_visits; ++i) {
     next_ = next_ < num_full ? next_ : 0;
     visit(landmarks, next_++);

@@ -13,9 +13,9 @@ namespace samewhere::scene {
 // its chunk, out of the file until they rest again. For the owner of a map, in its thread.
 class LandmarkPages {
  public:
-  // Goes on with a round through all landmarks that takes `num_steps` > 0 such steps. A chunk that
-  // is as it was in the round before goes to the file; where there is no room it stays. The map is
-  // equal to what it was.
+  // Goes on with a round through all landmarks that takes `num_steps` such steps (0: one). A chunk
+  // that is as it was in the round before goes to the file; where there is no room it stays. The
+  // map is equal to what it was.
   void step(ChunkedVector<Landmark>& landmarks, std::size_t num_steps);
 
  private:
