@@ -150,6 +150,24 @@ TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
   EXPECT_GE(num_measured, 10) << "of 15: the first few are there to make sure";
 }
 
+TEST(Relocalisation, WhoIsKidnappedToARoomThatTheMapDoesNotKnowIsFoundNowhere) {
+  const Config config = config_of("twin:office-loop?seed=7", 90);
+  const Walk walk = walk_of(config);
+  const Walk elsewhere = walk_of(config_of("twin:office-loop?seed=8", 25));
+  Slam slam(config);
+  std::size_t index = 0;
+  for (const auto& frame : walk.frames) slam.feed(with_id(frame, index++, 0));
+  const std::size_t num_before = index;
+  for (const auto& other : elsewhere.frames) {
+    core::Frame frame = with_id(other, index++, 0);
+    frame.stamp_s += walk.frames.back().stamp_s + 60.0;  // anywhere in the map is within reach
+    slam.feed(frame);
+  }
+  slam.finish();
+  for (std::size_t i = 0; i < index; ++i)
+    EXPECT_EQ(slam.frames()[i].is_measured, i < num_before) << "frame " << i;
+}
+
 TEST(Relocalisation, NobodyIsFoundWhereHeCannotHaveGot) {
   const Config config = config_of("twin:office-loop?seed=7", 90);
   const Walk walk = walk_of(config);
