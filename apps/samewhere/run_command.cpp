@@ -72,7 +72,7 @@ void write(const pipeline::RunOutcome& outcome, Work work, const std::filesystem
 
 // How fast frames come and are done, where reading is part of it: the wait for a frame, which is
 // read while the one before it is worked on, and the work. Processor time is the whole program's.
-void print_times_with_reading(const core::Timings& timings) {
+void print_times_with_reading(const core::Timings& timings, double processor_ms) {
   const auto& times = timings.durations_ms();
   const std::vector<double>& work = times.at(report::kWholeFrameStage);
   std::vector<double> both = times.at(report::kWaitForInputStage);
@@ -82,11 +82,10 @@ void print_times_with_reading(const core::Timings& timings) {
   fmt::print(
       "  with reading {:.1f} ({:.1f} ms median, {:.1f} ms p95; {:.1f} ms of processor time)\n",
       1000.0 * summary.count / summary.total_ms, summary.median_ms, summary.p95_ms,
-      core::process_processor_ms() / summary.count);
+      processor_ms / summary.count);
 }
 
-void print_outcome(const pipeline::RunOutcome& outcome, Work work,
-                   const std::filesystem::path& folder) {
+void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::path& folder) {
   const report::RunRecord& record = outcome.record;
   fmt::print("{}\n", record.title);
   print_figures(record.figures);
@@ -99,8 +98,7 @@ void print_outcome(const pipeline::RunOutcome& outcome, Work work,
         1000.0 * summary.count / summary.total_ms, summary.median_ms, summary.p95_ms,
         record.timings.processor_ms().at(report::kWholeFrameStage) / summary.count,
         core::peak_memory_mib());
-    // recognition works on several frames at once
-    if (work == Work::kSlam) print_times_with_reading(record.timings);
+    if (record.processor_ms) print_times_with_reading(record.timings, *record.processor_ms);
   }
   if (record.first_pose_s)
     fmt::print("  first pose {:.2f} s after the start\n", *record.first_pose_s);
@@ -158,7 +156,7 @@ int execute(const RunCommand& command, Work work) {
           ? pipeline::run_slam(std::move(source), config, map_plan(command, folder, begin))
           : pipeline::run_recognition(std::move(source), config);
   write(outcome, work, folder);
-  print_outcome(outcome, work, folder);
+  print_outcome(outcome, folder);
   for (const auto& error : {outcome.record.input_error, outcome.map_error})
     if (error) throw core::InputError(*error);
   return outcome.record.is_interrupted ? core::kInterruptedExit : core::kDone;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <fcntl.h>
+#include <spdlog/spdlog.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -57,8 +58,14 @@ std::shared_ptr<const PagedBlock> PagedMemory::allocate(std::size_t size) {
   require(size > 0, "a block of memory has bytes");
   const std::size_t needed = whole_pages(size);
   if (free_.size() < needed) {
+    if (has_failed_) return nullptr;
     auto mapped = map_new_file(std::max(needed, kFileBytes));
-    if (!mapped) return nullptr;
+    if (!mapped) {
+      has_failed_ = true;
+      spdlog::warn("{}: no file can be made there, or it is full; the memory of the map grows",
+                   temporary_folder().string());
+      return nullptr;
+    }
     std::tie(file_, free_) = std::move(*mapped);
   }
   const std::span<std::byte> bytes = free_.first(size);

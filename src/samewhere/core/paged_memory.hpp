@@ -33,12 +33,13 @@ class PagedBlock {
 class PagedMemory {
  public:
   // `size` > 0 bytes, beginning at a page. Nothing if the folder cannot be written or is full; then
-  // ordinary memory has to do.
+  // ordinary memory has to do. That is told once, as a warning, and not tried again.
   std::shared_ptr<const PagedBlock> allocate(std::size_t size);
 
  private:
   std::shared_ptr<const void> file_;
   std::span<std::byte> free_;
+  bool has_failed_ = false;
 };
 
 }  // namespace samewhere::core

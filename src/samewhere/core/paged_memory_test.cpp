@@ -7,6 +7,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/paged_memory.hpp>
+#include <samewhere/core/test_temporary_folder.hpp>
 
 namespace samewhere::core {
 namespace {
@@ -24,26 +25,6 @@ long mapped_kib() {
   }
   return sum;
 }
-
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const char* folder) {
-    if (const char* before = std::getenv("TMPDIR")) before_ = before;
-    setenv("TMPDIR", folder, 1);
-  }
-  ~TemporaryFolder() {
-    if (before_.empty()) {
-      unsetenv("TMPDIR");
-    } else {
-      setenv("TMPDIR", before_.c_str(), 1);
-    }
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
- private:
-  std::string before_;
-};
 
 TEST(PagedMemory, BlocksAreApartAndKeepWhatIsWritten) {
   PagedMemory memory;

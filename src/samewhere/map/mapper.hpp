@@ -15,7 +15,8 @@ struct TrackedView {
   features::View view;
   core::FramePose pose;
   std::vector<std::pair<int, core::LandmarkId>> landmarks;  // feature, landmark
-  std::vector<int> passing;  // features of what moves, or may: they become no landmarks
+  // features of what moves, or may: their own depth makes them no landmarks
+  std::vector<int> passing;
 };
 
 // Two views without depth, how they stand to each other, and the points that both see.

@@ -83,6 +83,21 @@ TEST_F(TestMapper, ASecondKeyframeSeesOldLandmarksAgainAndAddsNewOnes) {
   EXPECT_EQ(grown.at(second.slots.back()).observations.back().keyframe, second.id);
 }
 
+TEST_F(TestMapper, WhatPassesByBecomesNoLandmarkByItsDepth) {
+  TrackedView tracked = tracked_at({core::exp_so3({0.0, 0.4, 0.0}), {0.3, 0.0, 0.1}});
+  const auto num_new = [&] {
+    return apply(map_, add_keyframe(map_, tracked)).landmarks.size() - map_.landmarks.size();
+  };
+  const std::size_t num_all = num_new();
+  std::vector<bool> is_known(static_cast<std::size_t>(tracked.view.features->size()), false);
+  for (const auto& shown : tracked.landmarks)
+    is_known[static_cast<std::size_t>(shown.first)] = true;
+  for (int i = 0; i < tracked.view.features->size() && tracked.passing.size() < 10; ++i)
+    if (!is_known[static_cast<std::size_t>(i)]) tracked.passing.push_back(i);
+  ASSERT_EQ(tracked.passing.size(), 10U);
+  EXPECT_EQ(num_new(), num_all - 10);
+}
+
 // A map started from two views without depth, at true scale.
 class WithoutDepth : public testing::Test {
  protected:

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include <samewhere/pipeline/passing_things.hpp>
 
@@ -9,6 +10,7 @@ namespace {
 // Somebody who walks is beside himself after a quarter of a second, and elsewhere after one.
 constexpr double kInterval_s = 0.25;
 constexpr std::size_t kNumSeen = 4;
+constexpr double kOldest_s = 1.05;  // four intervals, and what frames come late
 
 }  // namespace
 
@@ -24,19 +26,21 @@ std::vector<int> PassingThings::shown_in(const features::View& view, const core:
                                          const scene::MapVersion& map) const {
   const core::Rigid3 world_from_camera =
       world_from_frame(map, pose) * view.rig->body_from_camera[0];
-  std::vector<core::Rigid3> seen_from_camera;
-  for (const Seen& seen : seen_)
-    seen_from_camera.push_back(inverse(world_from_frame(map, seen.pose) * seen.body_from_camera) *
-                               world_from_camera);
+  std::vector<std::pair<const track::NearestSurface*, core::Rigid3>> seen_from_camera;
+  for (const Seen& seen : seen_) {
+    if (seen.pose.stamp_s < view.stamp_s - kOldest_s) continue;
+    seen_from_camera.emplace_back(
+        &seen.surface,
+        inverse(world_from_frame(map, seen.pose) * seen.body_from_camera) * world_from_camera);
+  }
   std::vector<int> shown;
   for (int i = 0; i < view.features->size(); ++i) {
     const auto point = features::point_in_camera(view, i);
     if (!point) continue;
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      if (!seen_[k].surface.sees_through(seen_from_camera[k] * *point)) continue;
-      shown.push_back(i);
-      break;
-    }
+    const bool is_new = std::any_of(
+        seen_from_camera.begin(), seen_from_camera.end(),
+        [&](const auto& seen) { return seen.first->sees_through(seen.second * *point); });
+    if (is_new) shown.push_back(i);
   }
   return shown;
 }

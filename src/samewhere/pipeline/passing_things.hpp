@@ -18,7 +18,11 @@ class PassingThings {
   // A frame with a pose; without depth nothing is remembered.
   void see(const core::Frame& frame, const core::FramePose& pose);
 
-  // Features of the view that show what moves. The pose is its own.
+  // The poses seen so far are no longer poses of the map.
+  void forget() { seen_.clear(); }
+
+  // Features of the view that show what moves, by pictures of the second before it. The pose is its
+  // own.
   std::vector<int> shown_in(const features::View& view, const core::FramePose& pose,
                             const scene::MapVersion& map) const;
 

@@ -184,6 +184,8 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   }
 
   outcome.map_error = mapped.finish();
+  if (!source->info().is_live && !config.input.realtime)
+    outcome.record.processor_ms = core::process_processor_ms();
 
   report::RunRecord& record = outcome.record;
   record.thumbnails = mapped.take_thumbnails();

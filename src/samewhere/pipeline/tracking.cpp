@@ -26,13 +26,6 @@ bool is_weak(const map::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
 
-bool are_apart(const core::Rigid3& a, const core::Rigid3& b) {
-  constexpr double kApart_m = 0.05;
-  constexpr double kApart_rad = 0.03;
-  const core::Rigid3 off = inverse(a) * b;
-  return off.translation.norm() > kApart_m || core::angle_rad(off.rotation) > kApart_rad;
-}
-
 bool has_lost_a_loop(const scene::MapVersion& before, const scene::MapVersion& after) {
   return std::any_of(before.loops.begin(), before.loops.end(), [&](const scene::LoopEdge& loop) {
     return std::none_of(after.loops.begin(), after.loops.end(),
@@ -79,7 +72,7 @@ void Tracking::feed(const core::Frame& frame) {
     tracked = locate(frame, view);
     frames_.push_back(tracked ? by_odometry(tracked->pose)
                               : core::FramePose{.frame = view.frame, .stamp_s = view.stamp_s});
-    if (tracked) passing_.see(frame, frames_.back());
+    if (tracked && !is_map_fixed_) passing_.see(frame, frames_.back());
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
   if (map::is_worth_keeping(map_, *tracked, config_.map)) keep(*tracked, frame.images[0]);
@@ -131,13 +124,15 @@ std::optional<map::TrackedView> Tracking::locate_in_map(const core::Frame& frame
   if (best && best->pose.num_inliers >= config_.track.sure_inliers) return best;
   auto held = held_by_depth(frame, view);
   const bool is_better = held && (!best || is_weak(*best) ||
-                                  are_apart(world_from(best->pose), world_from(held->pose)));
+                                  track::are_apart(world_from(best->pose), world_from(held->pose)));
   return is_better ? held : best;
 }
 
 std::optional<map::TrackedView> Tracking::held_by_depth(const core::Frame& frame,
                                                         const features::View& view) {
-  if (!frame.depth_m || !last_depth_m_ || local_map_.size() == 0) return std::nullopt;
+  constexpr double kAll = 1.0;
+  const bool is_asked = config_.track.min_share_by_depth <= kAll;
+  if (!is_asked || !frame.depth_m || !last_depth_m_ || local_map_.size() == 0) return std::nullopt;
   const core::ScopedTimer timer(timings_, "depth alignment");
   const core::Camera& camera = view.rig->cameras[0];
   const core::Rigid3& body_from_camera = view.rig->body_from_camera[0];
@@ -259,6 +254,7 @@ std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
   mapping_.send(StartMap{view, frame.images[0]});
   give_up_poses();
   begin_tracking(view, map::num_with_depth(view));
+  last_depth_m_ = frame.depth_m;
   return last_;
 }
 
@@ -308,6 +304,7 @@ std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
 
 // What was sent is sent again.
 void Tracking::give_up_poses() {
+  passing_.forget();
   if (num_keyframes_ > num_given_up_) ++num_starts_given_up_;
   place_finder_.forget();
   for (auto& pose : frames_) pose = {.frame = pose.frame, .stamp_s = pose.stamp_s};
@@ -337,6 +334,7 @@ void Tracking::begin_tracking(const features::View& view, int num_landmarks) {
   keyframe_of_[view.frame] = newest;
   look_around(newest);
   last_ = map::TrackedView{view, starting_pose(view, newest, num_landmarks), {}, {}};
+  last_from_next_ = {};
 }
 
 bool Tracking::can_promote_last() const {

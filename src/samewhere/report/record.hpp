@@ -49,6 +49,9 @@ struct RunRecord {
       thumbnails;  // JPEG (jpeg.hpp), of frames the ledger speaks of
   std::vector<Figure> figures;
   core::Timings timings;  // stage kWholeFrameStage is what frames per second are counted by
+  // Of the whole program, when the last frame was done; nothing where frames come at a pace of
+  // their own, or several at once.
+  std::optional<double> processor_ms;
   std::string config_yaml;
   std::optional<double> first_pose_s;  // from the program's start to the first measured pose
   bool is_interrupted = false;

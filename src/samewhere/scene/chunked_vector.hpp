@@ -38,14 +38,14 @@ class ChunkedVector {
 
   // Elements come in chunks, of which the last may be filled in part.
   std::size_t num_chunks() const { return chunks_.size(); }
-  const std::shared_ptr<Chunk>& chunk(std::size_t k) const { return chunks_[k].elements; }
+  std::shared_ptr<const Chunk> chunk(std::size_t k) const { return chunks_[k].elements; }
   // Where its elements begin and end.
   std::pair<std::size_t, std::size_t> range_of_chunk(std::size_t k) const {
     return {k * kChunkSize, std::min((k + 1) * kChunkSize, size_)};
   }
   // Whether chunk k of both is one and the same, and so equal without a look at it.
   bool shares_chunk(const ChunkedVector& other, std::size_t k) const {
-    return chunk(k) == other.chunk(k);
+    return chunks_[k].elements == other.chunks_[k].elements;
   }
 
   // Equal elements that lie elsewhere, where nobody writes to them: who edits one gets a copy.

@@ -10,6 +10,7 @@ namespace {
 using Chunk = ChunkedVector<Landmark>::Chunk;
 
 constexpr std::size_t kAlignment = alignof(std::max_align_t);
+static_assert(alignof(Chunk) <= kAlignment && alignof(Observation) <= kAlignment);
 
 // A chunk and what its landmarks hold, in one block.
 class PagedChunk {
@@ -47,8 +48,9 @@ class PagedChunk {
 void LandmarkPages::step(ChunkedVector<Landmark>& landmarks, std::size_t num_steps) {
   const std::size_t num_full = landmarks.size() / std::tuple_size_v<Chunk>;
   seen_.resize(num_full);
-  const std::size_t num_visits = num_steps > 1 ? (num_full + num_steps - 1) / num_steps : num_full;
-  for (std::size_t i = 0; i < num_visits; ++i) {
+  // where there are fewer chunks than steps, some steps visit none
+  const std::size_t num_in_round = std::max<std::size_t>(num_steps, 1);
+  for (due_ += num_full; due_ >= num_in_round && num_full > 0; due_ -= num_in_round) {
     next_ = next_ < num_full ? next_ : 0;
     visit(landmarks, next_++);
   }

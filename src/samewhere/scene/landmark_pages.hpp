@@ -31,6 +31,7 @@ class LandmarkPages {
   core::PagedMemory memory_;
   std::vector<Seen> seen_;  // per chunk, in the last round
   std::size_t next_ = 0;
+  std::size_t due_ = 0;  // chunks, times the steps of a round
 };
 
 }  // namespace samewhere::scene

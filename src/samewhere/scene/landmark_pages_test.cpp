@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <samewhere/core/test_temporary_folder.hpp>
 #include <samewhere/scene/landmark_pages.hpp>
 #include <samewhere/scene/test_edits.hpp>
 #include <samewhere/scene/test_map_file.hpp>
@@ -54,6 +55,31 @@ TEST(LandmarkPages, NothingGoesBeforeItRestedForARound) {
   for (int i = 0; i < 3; ++i) pages.step(known, 4);
   EXPECT_TRUE(known.shares_chunk(changed, 1)) << "changed since";
   EXPECT_FALSE(known.shares_chunk(before, 2));
+}
+
+TEST(LandmarkPages, ARoundTakesItsStepsHoweverManyChunksThereAre) {
+  for (const std::size_t num_chunks : {2U, 11U}) {
+    constexpr std::size_t kNumSteps = 10;
+    ChunkedVector<Landmark> known = landmarks(num_chunks * kChunkSize);
+    const ChunkedVector<Landmark> before = known;
+    LandmarkPages pages;
+    for (std::size_t i = 0; i < kNumSteps; ++i) pages.step(known, kNumSteps);
+    for (std::size_t k = 0; k < num_chunks; ++k)
+      EXPECT_TRUE(known.shares_chunk(before, k)) << k << " of " << num_chunks << " too early";
+    for (std::size_t i = 0; i < kNumSteps; ++i) pages.step(known, kNumSteps);
+    for (std::size_t k = 0; k < num_chunks; ++k)
+      EXPECT_FALSE(known.shares_chunk(before, k)) << k << " of " << num_chunks << " too late";
+  }
+}
+
+TEST(LandmarkPages, WhereThereIsNoRoomAllStaysInMemory) {
+  const core::TemporaryFolder nowhere("/nonexistent");
+  ChunkedVector<Landmark> known = landmarks(2 * kChunkSize);
+  const ChunkedVector<Landmark> before = known;
+  LandmarkPages pages;
+  let_rest(pages, known);
+  let_rest(pages, known);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_TRUE(known.shares_chunk(before, k));
 }
 
 TEST(LandmarkPages, WhoChangesOneTakesItsChunkOutOfTheFile) {

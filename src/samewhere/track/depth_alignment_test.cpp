@@ -72,6 +72,45 @@ TEST(DepthAlignment, OneWallOrACorridorLeavesTheWayAlongItOpen) {
   }
 }
 
+// As a depth camera with structured light errs: more with the square of the depth, and in steps of
+// its disparity.
+cv::Mat noisy(cv::Mat depth_m, std::uint64_t seed) {
+  constexpr double kFocalByBaseline = 60.0;  // pixels times metres
+  constexpr double kStep_px = 0.125;
+  core::Random random(seed);
+  for (int y = 0; y < depth_m.rows; ++y) {
+    for (int x = 0; x < depth_m.cols; ++x) {
+      auto& z = depth_m.at<float>(y, x);
+      if (!(z > 0.0F)) continue;
+      const double measured = z + 0.0015 * z * z * random.gaussian();
+      const double steps = std::round(kFocalByBaseline / measured / kStep_px);
+      z = static_cast<float>(kFocalByBaseline / (steps * kStep_px));
+    }
+  }
+  return depth_m;
+}
+
+TEST(DepthAlignment, NoiseIsNoStructure) {
+  const std::vector<Plane> corridor = {kCorner[0], {{1.0, 0.0, 0.0}, 0.9}, {{-1.0, 0.0, 0.0}, 0.9}};
+  core::Rigid3 aside;
+  aside.translation = {0.05, 0.0, 0.05};
+  std::uint64_t seed = 0;
+  for (const double distance_m : {1.0, 2.0, 3.0, 4.0}) {
+    const std::vector<Plane> wall = {{kCorner[1].normal, distance_m}};
+    for (const auto& planes : {wall, corridor}) {
+      const Surfaces earlier(noisy(depth_of(planes, {}), ++seed), kCamera);
+      const Surfaces later(noisy(depth_of(planes, aside), ++seed), kCamera);
+      EXPECT_FALSE(align(earlier, later, core::Rigid3{}, kMinShare)) << distance_m << " m";
+    }
+  }
+  const core::Rigid3 step = small_step();
+  const auto found =
+      align({noisy(depth_of(kCorner, {}), 20), kCamera},
+            {noisy(depth_of(kCorner, step), 21), kCamera}, core::Rigid3{}, kMinShare);
+  ASSERT_TRUE(found) << "a corner is one with noise, too";
+  EXPECT_LT((inverse(step) * found->earlier_from_later).translation.norm(), 0.005);
+}
+
 // A board of 1 m before the corner moves aside by itself.
 cv::Mat with_board(cv::Mat depth_m, int first_column, int width_px) {
   depth_m(cv::Rect(first_column, 60, width_px, 300)).setTo(1.0F);

@@ -146,16 +146,13 @@ std::optional<Track> Tracker::track(const View& view, const LocalMap& map,
 
 Track Tracker::track_at(const View& view, const LocalMap& map,
                         const core::Rigid3& reference_from_body, const Alignment& alignment) const {
-  constexpr double kFar_m = 0.05;
-  constexpr double kFar_rad = 0.03;
   const core::Rigid3 given = camera_from_reference(view, reference_from_body);
   const std::vector<Match> matches =
       search(view, map, reference_from_body, settings_.track.refine_radius_px);
   const optimize::MotionProblem problem = motion_problem(view, map, matches);
   const optimize::MotionResult refined = refine_pose(problem, given, settings_.optimize);
-  const core::Rigid3 step = refined.camera_from_world * inverse(given);
-  if (refined.num_inliers >= settings_.track.min_inliers && step.translation.norm() < kFar_m &&
-      core::angle_rad(step.rotation) < kFar_rad)
+  if (refined.num_inliers >= settings_.track.min_inliers &&
+      !are_apart(given, refined.camera_from_world))
     return make_track(view, map, matches, refined);
   optimize::Config in_place = settings_.optimize;
   in_place.motion_iterations = 0;
