@@ -47,8 +47,8 @@ struct Alignment {
 // is put on the plane of the patch of the earlier one that it falls on (point to plane, Chen and
 // Medioni, IVC 1992; projective association, Blais and Levine, PAMI 1995), with Tukey's weights, so
 // that what moves by itself is left out as long as the rest is more. Nothing if that leaves a
-// direction open (one wall, a bare corridor), less than `min_share` agrees, or less than a sixteenth
-// of the picture does.
+// direction open (one wall, a bare corridor), less than `min_share` agrees, or less than a
+// sixteenth of the picture does.
 std::optional<Alignment> align(const Surfaces& earlier, const Surfaces& later,
                                const core::Rigid3& guessed_earlier_from_later, double min_share);
 
