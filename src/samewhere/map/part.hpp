@@ -11,8 +11,8 @@ namespace samewhere::map {
 // Two places that a loop had made one were parted: `before` is the map with the loop, `after` the
 // one without it, its poses solved anew. The edits, to be applied to `after` in order, that take
 // out what is far off now (three times the limit of an inlier, in pixels):
-// - merges that mapping made while the loop was there, if most of the observations that came with
-//   them are;
+// - merges with younger landmarks, or for other loops, made while the loop was there, if most of
+//   the observations that came with them are (scene::withdraw() has taken the others back);
 // - sightings that fitted before (chi-square at 95 %); one that fits another of the landmarks that
 //   were one until now is handed to it;
 // - landmarks of which one observation without depth is left.

@@ -14,10 +14,10 @@ scene::MapVersion with_places_parted(const scene::MapVersion& before, scene::Map
                                      const Config& config);
 
 // The map as if the loop had never been accepted: its edge, the landmarks merged and seen for it,
-// the poses that it moved, and what mapping and tracking concluded from it later. The partition of
-// landmarks that the loop changed is the one before it, exactly; poses are as near as the solvers
-// bring them. Keyframes and landmarks that were culled since stay culled. Takes any loop that the
-// map has accepted; throws ContractError for another cause.
+// the poses that it moved, and what mapping and tracking concluded from it later. Which
+// landmarks from before it are one is what it was then, exactly, but for what other loops merged;
+// poses are as near as the solvers bring them. Keyframes and landmarks that were culled since stay
+// culled. Takes any loop that the map has accepted; throws ContractError for another cause.
 scene::MapVersion without_loop(const scene::MapVersion& map, core::CandidateId cause,
                                const Config& config);
 

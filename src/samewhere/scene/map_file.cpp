@@ -32,7 +32,7 @@ constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,    
                                    kFrame,  kDescriptor, kLedger, kThumbnail};
 
 // 5: thumbnails.
-constexpr std::int64_t kMapFileVersion = 5;
+constexpr std::int64_t kMapFileVersion = 6;
 constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion, kTables};
 
 // How much a commit left: rows that went missing are missed (but thumbnails, on which nothing

@@ -69,7 +69,7 @@ void fields(Archive& archive, Value<Archive, Landmark>& landmark) {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, LoopEdge>& loop) {
   archive(loop.query, loop.match, loop.match_from_query, loop.information, loop.cause,
-          loop.log_scale, loop.closed_at);
+          loop.log_scale, loop.closed_at, loop.num_landmarks_then);
 }
 
 template <class Archive>

@@ -123,6 +123,7 @@ void believe(MapVersion& map, const Edit& edit) {
     std::erase_if(map.doubted_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
     map.loops.push_back(loop);
     map.loops.back().closed_at = map.number;
+    map.loops.back().num_landmarks_then = map.landmarks.size();
   }
 }
 

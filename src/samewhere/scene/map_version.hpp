@@ -84,6 +84,7 @@ struct LoopEdge {
   core::CandidateId cause;
   double log_scale = 0.0;       // what is 1 long at the query is exp(log_scale) long at the match
   std::uint64_t closed_at = 0;  // MapVersion::number then; set by apply()
+  std::uint64_t num_landmarks_then = 0;  // landmarks of the map then, all; set by apply()
 };
 
 // How many keyframes or landmarks are part of the map today.

@@ -65,7 +65,8 @@ inline bool is_same(const Landmark& a, const Landmark& b) {
 inline bool is_same(const LoopEdge& a, const LoopEdge& b) {
   return a.query == b.query && a.match == b.match &&
          is_same(a.match_from_query, b.match_from_query) && a.information == b.information &&
-         a.cause == b.cause && a.log_scale == b.log_scale && a.closed_at == b.closed_at;
+         a.cause == b.cause && a.log_scale == b.log_scale && a.closed_at == b.closed_at &&
+         a.num_landmarks_then == b.num_landmarks_then;
 }
 
 inline bool is_same(const Merge& a, const Merge& b) {

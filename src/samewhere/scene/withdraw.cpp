@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/scene/observations.hpp>
@@ -86,18 +88,63 @@ void remove_observations(MapVersion& map, const Causes& causes, std::size_t land
   }
 }
 
-// Per merge of the map. `to` stands for the whole that came out of a merge until it is merged
-// itself.
+// Follows how landmarks became one after another. `to` stands for the whole that came out of a
+// merge until it is merged itself.
+class Merging {
+ public:
+  explicit Merging(std::vector<LoopEdge> withdrawn) : withdrawn_(std::move(withdrawn)) {
+    known_to_.resize(withdrawn_.size());
+  }
+
+  // Whether the merge is one that mapping alone made while a withdrawn loop was there, of two
+  // wholes that both were, in part, there before that loop.
+  bool is_of_known(const Merge& made) const {
+    if (made.cause.is_valid()) return false;
+    for (std::size_t i = 0; i < withdrawn_.size(); ++i)
+      if (made.made_at >= withdrawn_[i].closed_at && is_known(i, made.from) && is_known(i, made.to))
+        return true;
+    return false;
+  }
+
+  // The merge stays.
+  void note(const Merge& made) {
+    for (std::size_t i = 0; i < withdrawn_.size(); ++i)
+      if (is_known(i, made.from)) known_to_[i].insert(made.to);
+  }
+
+ private:
+  bool is_known(std::size_t loop, core::LandmarkId id) const {
+    return id.index() < withdrawn_[loop].num_landmarks_then || known_to_[loop].contains(id);
+  }
+
+  std::vector<LoopEdge> withdrawn_;
+  std::vector<std::set<core::LandmarkId>> known_to_;  // per loop: younger ones with an older part
+};
+
+std::vector<LoopEdge> believed_of(const MapVersion& map, const Causes& causes) {
+  std::vector<LoopEdge> loops;
+  std::copy_if(map.loops.begin(), map.loops.end(), std::back_inserter(loops),
+               [&](const LoopEdge& loop) { return causes.contains(loop.cause); });
+  return loops;
+}
+
+// Per merge of the map.
 std::vector<bool> merges_to_take_back(const MapVersion& map, const Causes& causes,
                                       const std::vector<core::LandmarkId>& unmerged) {
   const std::set<core::LandmarkId> named(unmerged.begin(), unmerged.end());
   std::set<core::LandmarkId> doubtful;  // wholes with a part that is taken back
+  Merging merging(believed_of(map, causes));
   std::vector<bool> is_taken_back;
   for (std::size_t i = 0; i < map.merges.size(); ++i) {
     const Merge& made = map.merges[i];
     is_taken_back.push_back(causes.contains(made.cause) || named.contains(made.from) ||
-                            doubtful.contains(made.from) || doubtful.contains(made.to));
-    if (is_taken_back.back()) doubtful.insert(made.to);
+                            doubtful.contains(made.from) || doubtful.contains(made.to) ||
+                            merging.is_of_known(made));
+    if (is_taken_back.back()) {
+      doubtful.insert(made.to);
+    } else {
+      merging.note(made);
+    }
   }
   return is_taken_back;
 }
@@ -167,10 +214,11 @@ void withdraw(MapVersion& map, const std::vector<core::CandidateId>& loops,
     if (causes.contains(loop.cause))
       num_older_keyframes = std::max(num_older_keyframes, num_older(loop));
   forget_refinements(map, causes);
+  const std::vector<bool> is_taken_back = merges_to_take_back(map, causes, unmerged);
   remove_edges(map, causes);
   if (!causes.empty())
     for (std::size_t i = 0; i < map.landmarks.size(); ++i) remove_observations(map, causes, i);
-  take_back(map, merges_to_take_back(map, causes, unmerged));
+  take_back(map, is_taken_back);
   if (causes.empty()) return;
   hang_merged_on_the_living(map);
   let_culled_stand_as_measured(map, num_older_keyframes);

@@ -13,6 +13,12 @@ namespace samewhere::scene {
 // - Merges of these causes are taken back, and so is every later merge, whatever its cause, of a
 //   landmark that one of them had a part in: it may have been made for the sake of the wrong part.
 //   So the landmarks that these merges touched are one exactly where they were before.
+// - So are merges that mapping alone made since, of wholes that both hold landmarks from before the
+//   loop, with every later merge of what they touched: poses that the loop had bent, and places
+//   that it had laid onto each other, may have made them. What is the same point all the same is
+//   merged again when it is seen. Merges for the sake of other loops stay, and those of younger
+//   landmarks with older ones. So but for other loops the partition of the landmarks from before is
+//   the one from before, exactly.
 // - Who comes back shows again wherever it showed when it was merged, but in keyframes that were
 //   culled since. What it had gone into, if culled since, comes back with what is still free.
 // - Keyframes older than the loop that a bundle refined since, and culled ones, are where odometry

@@ -44,6 +44,15 @@ std::vector<core::LandmarkId> survivors(const MapVersion& map, std::size_t num_l
   return ids;
 }
 
+// Per landmark the first that is one with it.
+std::vector<std::size_t> classes(const MapVersion& map, std::size_t num_landmarks) {
+  const auto ids = survivors(map, num_landmarks);
+  std::vector<std::size_t> firsts;
+  for (const auto& id : ids)
+    firsts.push_back(static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin()));
+  return firsts;
+}
+
 void expect_slots_and_observations_agree(const MapVersion& map) {
   std::size_t num_shown = 0;
   std::size_t num_observations = 0;
@@ -105,6 +114,21 @@ class Withdrawing : public MapFiles {
     return id;
   }
 
+  std::vector<core::LandmarkId> different_live(std::size_t count) {
+    std::vector<core::LandmarkId> ids;
+    while (ids.size() < count) {
+      const core::LandmarkId id = any_live();
+      if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+    }
+    return ids;
+  }
+
+  void believe_lie() {
+    Edit edge;
+    edge.loops = {lie_};
+    map_ = apply(std::move(map_), edge);
+  }
+
   bool merge(core::LandmarkId from, core::LandmarkId to, core::CandidateId cause) {
     if (from == to || !is_live(map_.at(from)) || !is_live(map_.at(to))) return false;
     Edit edit;
@@ -130,9 +154,7 @@ class Withdrawing : public MapFiles {
 
   // The wrong loop merges and sees; mapping merges on, always with a part that the loop merged.
   void lie_and_follow() {
-    Edit edge;
-    edge.loops = {lie_};
-    map_ = apply(std::move(map_), edge);
+    believe_lie();
     for (int i = 0; i < 15; ++i) {
       const core::LandmarkId one = any_live();
       const core::LandmarkId other = any_live();
@@ -200,21 +222,52 @@ TEST_F(Withdrawing, WhatWasCulledOrCameMeanwhileDoesNotChangeWhichLandmarksAreOn
 
 TEST_F(Withdrawing, MergesThatHaveNothingToDoWithItStay) {
   begin(3);
-  const auto before = survivors(map_, num_before_);
-  ASSERT_TRUE(merge(any_live(), any_live(), kLie));
-  const Merge lie = map_.merges.back();
-  Edit edge;
-  edge.loops = {lie_};
-  map_ = apply(std::move(map_), edge);
-  core::LandmarkId from = any_live();
-  core::LandmarkId to = any_live();
-  while (from == lie.to) from = any_live();
-  while (to == lie.to || to == from) to = any_live();
-  ASSERT_TRUE(merge(from, to, {}));
+  const std::vector<core::LandmarkId> ids = different_live(7);
+  ASSERT_TRUE(merge(ids[0], ids[1], {}));
+  believe_lie();
+  ASSERT_TRUE(merge(ids[2], ids[3], kLie));
+  ASSERT_TRUE(merge(ids[4], ids[5], kTruth));
+  const core::LandmarkId younger(map_.landmarks.size());
+  add_rich_keyframe(3);
+  ASSERT_TRUE(merge(younger, ids[6], {}));
   const MapVersion after = without_lie();
   EXPECT_EQ(after.merges.size(), map_.merges.size() - 1);
-  EXPECT_EQ(after.at(from).merged_into, to);
-  EXPECT_EQ(survivor_of(after, lie.from).id, before[lie.from.index()]);
+  EXPECT_EQ(after.at(ids[0]).merged_into, ids[1]) << "mapping merged before it";
+  EXPECT_EQ(after.at(ids[4]).merged_into, ids[5]) << "for the sake of another loop";
+  EXPECT_EQ(after.at(younger).merged_into, ids[6]) << "nobody knew it before the loop";
+  EXPECT_TRUE(is_live(after.at(ids[2])));
+}
+
+TEST_F(Withdrawing, WhatMappingMergedWhileItWasThereLeavesThePartitionOfBefore) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    begin(seed);
+    for (int i = 0; i < 5; ++i) merge(any_live(), any_live(), {});
+    const auto before = classes(map_, num_before_);
+    believe_lie();
+    add_rich_keyframe(seed);
+    num_before_ = map_.landmarks.size();  // to choose from: younger ones, too
+    for (int i = 0; i < 60; ++i) merge(any_live(), any_live(), {});
+    EXPECT_NE(classes(map_, before.size()), before) << "it changed nothing";
+    const MapVersion after = without_lie();
+    EXPECT_EQ(classes(after, before.size()), before);
+    EXPECT_LT(after.merges.size(), map_.merges.size());
+    expect_slots_and_observations_agree(after);
+  }
+}
+
+TEST_F(Withdrawing, TwoOldLandmarksAreNoLongerOneThroughAYoungerOne) {
+  begin(9);
+  const std::vector<core::LandmarkId> ids = different_live(2);
+  const auto before = classes(map_, num_before_);
+  believe_lie();
+  const core::LandmarkId younger(map_.landmarks.size());
+  add_rich_keyframe(9);
+  ASSERT_TRUE(merge(ids[0], younger, {}));
+  ASSERT_TRUE(merge(younger, ids[1], {}));
+  const MapVersion after = without_lie();
+  EXPECT_EQ(classes(after, num_before_), before);
+  EXPECT_EQ(after.at(ids[0]).merged_into, younger) << "one of the two keeps it";
 }
 
 TEST_F(Withdrawing, AMergedLandmarkComesBackAloneWithItsLaterMerges) {
