@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <vector>
+#include <set>
 
 #include <samewhere/core/truth.hpp>
 #include <samewhere/pipeline/config.hpp>
@@ -14,19 +14,11 @@ struct Lie {
   scene::LoopEdge loop;
   double error_m = 0.0;        // from the true relative pose
   std::uint64_t asked_at = 0;  // keyframe
+  scene::MapVersion before;    // as it was asked
 };
 
-// What a lie left behind, at the first keyframe after it was withdrawn.
-struct Aftermath {
-  int num_merged = 0;                         // landmarks, while it was believed
-  int num_seen = 0;                           // landmarks in keyframes that did not know
-  std::optional<std::uint64_t> withdrawn_at;  // keyframe
-  int num_not_restored =
-      0;  // landmarks from before that bear its mark or left who they were one with
-  int num_later_merges = 0;     // of two landmarks from before, made since and still there
-  int num_wrong_merges = 0;     // of these, of points more than 0.3 m apart
-  double ate_believed_m = 0.0;  // of the keyframes, before it was withdrawn
-};
+// Where a keyframe's body truly was.
+core::Rigid3 true_pose(const core::Truth& truth, const scene::MapVersion& map, core::KeyframeId id);
 
 // Says instead of loop closing which loops there are: a lie, and, so that it can be found out, true
 // ones between the places around it soon after. No others.
@@ -34,33 +26,30 @@ class Liar {
  public:
   // Lies once `lie_after` keyframes are there, as soon as odometry has saved the judge from a loop
   // that is off by half a metre or more, and by no more than a few.
-  Liar(const pipeline::Config& config, int lie_after);
-  // Says the same true loops as after that lie, and does not lie.
-  Liar(const pipeline::Config& config, const Lie& untold);
+  Liar(const pipeline::Config& config, int lie_after, core::Truth truth);
 
-  void begin(const core::Truth& truth) { truth_ = truth; }
   void answer(const pipeline::ToLoopClosing& question, pipeline::LoopAnswer& answer);
-  void see(const scene::MapVersion& map);
+  // To somebody who walks beside the one who is lied to: the same true loops, and no lie.
+  void answer_honestly(const pipeline::ToLoopClosing& question, pipeline::LoopAnswer& answer) const;
 
   const std::optional<Lie>& lie() const { return lie_; }
-  const Aftermath& aftermath() const { return aftermath_; }
+  // The true loop told to the question of that keyframe, in that map.
+  std::optional<scene::LoopEdge> truth_for(const scene::MapVersion& map,
+                                           core::KeyframeId query) const;
+  // The keyframe of the last true loop, or of the map if that ends before; once there is a lie.
+  std::size_t last_truth_at(const scene::MapVersion& map) const;
+  // Causes of all true loops, told or not.
+  static std::set<core::CandidateId> true_causes();
 
  private:
-  core::Rigid3 true_pose(const scene::MapVersion& map, core::KeyframeId id) const;
   core::Rigid3 true_match_from_query(const scene::MapVersion& map, core::KeyframeId match,
                                      core::KeyframeId query) const;
   void tell_lie(const pipeline::FindLoops& question, pipeline::LoopAnswer& answer);
-  void tell_truth(const pipeline::FindLoops& question, pipeline::LoopAnswer& answer) const;
-  void compare(const scene::MapVersion& map);
 
   pipeline::Config config_;
   int lie_after_ = 0;
-  bool is_honest_ = false;
   core::Truth truth_;
   std::optional<Lie> lie_;
-  scene::MapVersion before_;    // as it was asked
-  scene::MapVersion believed_;  // the last with the lie
-  Aftermath aftermath_;
 };
 
 }  // namespace samewhere::bench
