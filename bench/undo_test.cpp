@@ -147,6 +147,7 @@ TEST_F(Lies, TrueLoopsFollowForWhoWasLiedToAndForWhoWasNot) {
     EXPECT_EQ(told_honestly.loops[0].edge.cause, edge.cause);
     EXPECT_TRUE(Liar::true_causes().contains(edge.cause));
   }
+  EXPECT_EQ(liar_.last_truth_at(map_), 18U);
 }
 
 }  // namespace

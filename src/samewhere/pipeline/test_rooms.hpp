@@ -46,7 +46,7 @@ class LookAlikeRooms : public testing::Test {
     const features::View view =
         features::test_view(world_, static_cast<int>(i), map::test_walk(static_cast<int>(in_room)));
     if (i == 0) return apply(map, map::start_map(map, view, {}));
-    core::Random random(core::seed_of(5, "odometry", i));
+    core::Random random(core::seed_of(odometry_seed_, "odometry", i));
     core::Vector6d error;
     for (double& value : error) value = (i == kPerRoom ? 0.02 : 0.003) * random.gaussian();
     const core::Rigid3 world_from_body = map.keyframes.back().world_from_body *
@@ -120,6 +120,7 @@ class LookAlikeRooms : public testing::Test {
   }
 
   Config config_;
+  std::uint64_t odometry_seed_ = 5;
   features::TestWorld world_ = features::test_world(3, 2000);
   scene::MapVersion map_;
 };

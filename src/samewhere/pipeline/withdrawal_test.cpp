@@ -1,3 +1,5 @@
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include <samewhere/pipeline/loop_closing.hpp>
@@ -32,27 +34,28 @@ TEST_F(LookAlikeRooms, AWrongLoopMakesThemOneAndWithoutItTheyAreTwo) {
 }
 
 TEST_F(LookAlikeRooms, TrueLoopsThatComeLaterPartThemAgain) {
-  MapVersion believed = closed(map_, lie());
-  MapVersion never = map_;
-  for (int i = 0; i < 3; ++i) {  // tracking follows the wrong room's landmarks, mapping merges on
-    believed = with_next(believed);
-    never = with_next(never);
+  for (odometry_seed_ = 1; odometry_seed_ <= 8; ++odometry_seed_) {
+    SCOPED_TRACE("seed " + std::to_string(odometry_seed_));
+    walk_both();
+    MapVersion believed = closed(map_, lie());
+    MapVersion never = map_;
+    for (int i = 0; i < 3; ++i) {  // tracking follows the wrong room's landmarks, mapping merges on
+      believed = with_next(believed);
+      never = with_next(never);
+    }
+    ASSERT_GT(num_seen_in_both_rooms(believed), 100);
+    for (const std::size_t query : {13U, 14U}) {
+      believed = closed(believed, true_loop(query, 14 - query));
+      never = closed(never, true_loop(query, 14 - query));
+    }
+    ASSERT_EQ(never.loops.size(), 2U);
+    EXPECT_EQ(believed.loops.size(), 2U);
+    ASSERT_EQ(believed.doubted_loops.size(), 1U);
+    EXPECT_EQ(believed.doubted_loops[0].cause, kLie);
+    EXPECT_EQ(survivors(believed), survivors(map_));
+    EXPECT_EQ(num_seen_in_both_rooms(believed), 0);
+    EXPECT_LT(rmse_m(believed), 1.02 * rmse_m(never)) << "the goal of the bench undo";
   }
-  ASSERT_GT(num_seen_in_both_rooms(believed), 100);
-  std::size_t num_told = 0;
-  for (const std::size_t query : {13U, 14U}) {
-    believed = closed(believed, true_loop(query, 14 - query));
-    never = closed(never, true_loop(query, 14 - query));
-    ++num_told;
-  }
-  ASSERT_EQ(never.loops.size(), num_told);
-  EXPECT_EQ(believed.loops.size(), num_told);
-  ASSERT_EQ(believed.doubted_loops.size(), 1U);
-  EXPECT_EQ(believed.doubted_loops[0].cause, kLie);
-  EXPECT_EQ(survivors(believed), survivors(map_));
-  EXPECT_EQ(num_seen_in_both_rooms(believed), 0);
-  // not the same: what was culled, or made twice, while the lie was believed, stays so
-  EXPECT_LT(rmse_m(believed), 1.15 * rmse_m(never));
 }
 
 TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoLiesPartsThem) {
