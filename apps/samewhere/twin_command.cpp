@@ -159,6 +159,11 @@ void add_twin_command(CLI::App& app) {
       sub->add_flag("--list", command->is_list, "print the presets, a line each");
   add_config_options(*sub, command->config);
   sub->footer(
+      "Keys of twin:PRESET?KEY=VALUE&KEY=VALUE: seed; similarity, 0 to 1; speed, 0.5 to 2; people, "
+      "0 to 30;\n"
+      "stray, 0 to 1: metres that who walks leaves the middle of the way, the camera held "
+      "elsewhere;\n"
+      "camera: rgbd, stereo or mono.\n\n"
       "Examples:\n"
       "  samewhere twin --list\n"
       "  samewhere twin 'twin:hotel?seed=3&similarity=0.9' --out hotel --format tum\n"

@@ -49,7 +49,7 @@ struct Motion::Angles {
   Jet yaw, pitch, roll;
 };
 
-Motion::Motion(const Route& route, std::uint64_t seed)
+Motion::Motion(const Route& route, std::uint64_t seed, const Stray& stray)
     : carrier_(route.carrier),
       camera_height_m_(route.camera_height_m),
       look_aside_rad_(route.look_aside_rad) {
@@ -58,6 +58,10 @@ Motion::Motion(const Route& route, std::uint64_t seed)
   core::Random random(core::seed_of(seed, "twin.motion", 0));
   shake_ = camera_shake(route.carrier, random);
   drive_ = drive_along(route, random);
+  if (stray.most_m <= 0.0 || route.carrier != Carrier::kWalker) return;
+  core::Random astray(core::seed_of(seed, "twin.stray", 0));
+  hold_elsewhere(stray.most_m, astray, shake_);
+  step_aside(stray, astray, drive_);
 }
 
 core::Rigid3 Motion::world_from_body(double stamp_s) const {

@@ -7,6 +7,7 @@
 #include <samewhere/twin/drive.hpp>
 #include <samewhere/twin/route.hpp>
 #include <samewhere/twin/shake.hpp>
+#include <samewhere/twin/stray.hpp>
 
 namespace samewhere::twin {
 
@@ -16,12 +17,13 @@ namespace samewhere::twin {
 //
 // The carrier's way (drive.hpp) is sampled every 0.1 s and taken as the control points of a uniform
 // cubic B-spline in time; the camera shakes on it (shake.hpp). The camera stays within
-// kMostFromRoute_m + 0.03 m of the route's lines, seen from above. The same route and seed give the
-// same motion, bit for bit; another seed another pace, drift and shake.
+// kMostFromRoute_m + 0.03 m of the route's lines, seen from above, and as much further as it strays
+// (stray.hpp; a robot does not). The same route and seed give the same motion, bit for bit; another
+// seed another pace, drift and shake.
 class Motion {
  public:
   // Throws ContractError for a route that cannot be walked (drive.hpp).
-  Motion(const Route& route, std::uint64_t seed);
+  Motion(const Route& route, std::uint64_t seed, const Stray& stray = {});
 
   Carrier carrier() const { return carrier_; }
   double duration_s() const { return drive_.duration_s; }

@@ -75,11 +75,14 @@ void apply(const Setting& setting, Spec& spec) {
     spec.speed = number(setting, 0.5, 2.0, "a number in [0.5, 2]");
   } else if (setting.key == "people") {
     spec.people = number(setting, 0, 30, "a whole number in [0, 30]");
+  } else if (setting.key == "stray") {
+    spec.stray_m = number(setting, 0.0, 1.0, "a number in [0, 1]");
   } else if (setting.key == "camera") {
     spec.sensors = sensors_of(setting);
   } else {
     throw core::InputError(
-        fmt::format("{}: unknown key {}; expected one of: seed, similarity, speed, people, camera",
+        fmt::format("{}: unknown key {}; expected one of: seed, similarity, speed, people, stray, "
+                    "camera",
                     setting.spec, setting.key));
   }
 }
@@ -131,8 +134,11 @@ std::string canonical_text(const Spec& spec) {
   for (const auto& [name, sensors] : kSensors) {
     if (spec.sensors == sensors) camera = name;
   }
-  return fmt::format("{}{}?seed={}&similarity={}&speed={}&people={}&camera={}", kScheme,
-                     spec.preset, spec.seed, spec.similarity, spec.speed, spec.people, camera);
+  // not named where nobody strays: texts, and what is kept under them, are older than the key
+  const std::string stray = spec.stray_m > 0.0 ? fmt::format("&stray={}", spec.stray_m) : "";
+  return fmt::format("{}{}?seed={}&similarity={}&speed={}&people={}&camera={}{}", kScheme,
+                     spec.preset, spec.seed, spec.similarity, spec.speed, spec.people, camera,
+                     stray);
 }
 
 }  // namespace samewhere::twin

@@ -17,6 +17,7 @@ struct Spec {
   double similarity = 0.8;  // 0: every place has its own looks, 1: only wear and numbers differ
   double speed = 1.0;       // times the usual one of the preset
   int people = 0;           // walking about
+  double stray_m = 0.0;     // key `stray`: who walks leaves the middle of the way by up to this
   Sensors sensors = Sensors::kRgbd;  // key `camera`
 };
 
@@ -34,7 +35,8 @@ bool is_twin_spec(std::string_view text);
 // key given twice, a value outside its range.
 Spec parse_spec(const std::string& text);
 
-// The spec with every key in a fixed order: equal for equal specs, and parse_spec reads it back.
+// The spec with every key in a fixed order, but `stray` only where it is not 0: equal for equal
+// specs, and parse_spec reads it back.
 std::string canonical_text(const Spec& spec);
 
 }  // namespace samewhere::twin

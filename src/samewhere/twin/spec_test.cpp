@@ -37,8 +37,10 @@ TEST(TwinSpec, HasDefaultsForWhatIsNotSaid) {
 }
 
 TEST(TwinSpec, ReadsHowTheBuildingIsWalked) {
-  const Spec spec = parse_spec("twin:hotel?speed=0.5&people=7&camera=stereo");
+  const Spec spec = parse_spec("twin:hotel?speed=0.5&people=7&camera=stereo&stray=0.6");
   EXPECT_EQ(spec.preset, "hotel");
+  EXPECT_DOUBLE_EQ(spec.stray_m, 0.6);
+  EXPECT_EQ(parse_spec("twin:hotel").stray_m, 0.0);
   EXPECT_DOUBLE_EQ(spec.speed, 0.5);
   EXPECT_EQ(spec.people, 7);
   EXPECT_EQ(spec.sensors, Sensors::kStereo);
@@ -58,6 +60,10 @@ TEST(TwinSpec, EqualSpecsHaveOneCanonicalText) {
   EXPECT_EQ(canonical_text(parse_spec("twin:mirror?seed=7&speed=1.5&people=0")), text);
   EXPECT_EQ(canonical_text(parse_spec(text)), text);
   EXPECT_NE(canonical_text(parse_spec("twin:mirror?seed=7&speed=1.5&camera=mono")), text);
+  EXPECT_EQ(canonical_text(parse_spec("twin:mirror?seed=7&speed=1.5&stray=0")), text);
+  const std::string astray = canonical_text(parse_spec("twin:mirror?stray=0.8&seed=7&speed=1.5"));
+  EXPECT_EQ(astray, text + "&stray=0.8");
+  EXPECT_EQ(canonical_text(parse_spec(astray)), astray);
 }
 
 struct BadSpec {
@@ -88,6 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"twin:office-loop?similarity=nan", "similarity = nan is not a number in [0, 1]"},
         BadSpec{"twin:office-loop?speed=0.49", "speed = 0.49 is not a number in [0.5, 2]"},
         BadSpec{"twin:office-loop?speed=2.1", "speed = 2.1 is not a number in [0.5, 2]"},
+        BadSpec{"twin:office-loop?stray=1.1", "stray = 1.1 is not a number in [0, 1]"},
         BadSpec{"twin:office-loop?people=31", "people = 31 is not a whole number in [0, 30]"},
         BadSpec{"twin:office-loop?people=-1", "people = -1 is not a whole number in [0, 30]"},
         BadSpec{"twin:office-loop?camera=rgb", "camera = rgb is not rgbd, stereo or mono"},

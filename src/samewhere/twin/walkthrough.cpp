@@ -36,6 +36,20 @@ Walk walk_of(const Motion& motion, int num_frames) {
   return walk;
 }
 
+Motion motion_through(const World& world, const Spec& spec) {
+  const std::uint64_t seed = core::seed_of(spec.seed, "twin.motion", 0);
+  if (spec.stray_m == 0.0) return {world.route, seed};
+  std::vector<RayScene> visits;
+  for (const auto& building : world.visits) visits.emplace_back(building.rectangles);
+  const Room room_m = [&](const Eigen::Vector3d& floor_m, double heading_rad) {
+    double least_m = spec.stray_m;
+    for (const auto& rays : visits)
+      least_m = std::min(least_m, room_in(rays, floor_m, heading_rad, spec.stray_m));
+    return least_m;
+  };
+  return {world.route, seed, {.most_m = spec.stray_m, .room_m = room_m}};
+}
+
 std::uint64_t imu_seed(const Spec& spec) { return core::seed_of(spec.seed, "twin.imu", 0); }
 
 std::vector<Person> people_in(const World& world, const Spec& spec) {
@@ -50,7 +64,7 @@ Walkthrough::Walkthrough(const Spec& spec, const Config& config)
     : spec_(spec),
       name_(fmt::format("{}-seed{}", spec.preset, spec.seed)),
       world_(build_world(spec)),
-      motion_(world_.route, core::seed_of(spec.seed, "twin.motion", 0)),
+      motion_(motion_through(world_, spec)),
       rig_(rig_for(spec)),
       walk_(walk_of(motion_, config.num_frames)),
       people_(people_in(world_, spec)),
