@@ -82,9 +82,11 @@ std::function<Kind(int, int)> kind_by_place(std::optional<core::PlaceTruthMatrix
   };
 }
 
-// Frames in between are not rendered.
+// Frames in between are not rendered, nor depth, nor a second camera's pictures: nobody asks.
 KnownViews views_of_twin(const pipeline::Config& config, const PairRule& rule) {
-  const twin::Walkthrough walk(twin::parse_spec(config.source), config.twin);
+  twin::Spec spec = twin::parse_spec(config.source);
+  spec.sensors = twin::Sensors::kMono;
+  const twin::Walkthrough walk(spec, config.twin);
   const twin::Studio studio(walk, config.twin);
   core::Progress progress("looking at " + config.source, walk.num_frames() / rule.step);
   Viewer viewer(config, rule);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -9,6 +10,8 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/ordered_workers.hpp>
+#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/pairs/labelled_pairs.hpp>
 #include <samewhere/train/held_back.hpp>
 #include <samewhere/train/pair_set.hpp>
@@ -51,23 +54,41 @@ std::string digest_of(const PairSet& set) {
   return sha.hex();
 }
 
-void read_source(const std::string& name, bool is_held_back, const PairConfig& config,
-                 PairSet& set) {
+struct PairsOfSource {
+  PairSource source;
+  std::vector<PairExample> pairs;
+};
+
+PairsOfSource pairs_of_source(const std::string& name, const PairConfig& config) {
   const pairs::LabelledPairs labelled =
       pairs::labelled_pairs(name, {.step = config.step,
                                    .window_frames = config.window_frames,
                                    .min_matches = config.min_matches,
                                    .other_cameras = config.other_cameras});
-  PairSource source{.source = name, .is_held_back = is_held_back};
+  PairsOfSource made{.source = {.source = name}, .pairs = {}};
   for (const pairs::LabelledPair& pair : labelled.pairs) {
     const auto view = verify::register_pair(labelled.views[static_cast<std::size_t>(pair.query)],
                                             labelled.views[static_cast<std::size_t>(pair.match)],
                                             pair.matches, {});
     if (!view) continue;
-    ++(pair.is_same ? source.num_same : source.num_wrong);
-    set.pairs.push_back({packed(view->planes), pair.is_same});
+    ++(pair.is_same ? made.source.num_same : made.source.num_wrong);
+    made.pairs.push_back({packed(view->planes), pair.is_same});
   }
-  set.sources.push_back(source);
+  return made;
+}
+
+// Several sources at a time; which thread makes which is not seen in the pairs.
+void read_sources(std::span<const std::string> names, bool is_held_back, const PairConfig& config,
+                  PairSet& set) {
+  const int num_threads = config.threads > 0 ? config.threads : core::num_hardware_threads();
+  core::OrderedWorkers<PairsOfSource> workers(
+      static_cast<int>(names.size()), num_threads,
+      [&](int i) { return pairs_of_source(names[static_cast<std::size_t>(i)], config); });
+  while (std::optional<PairsOfSource> made = workers.next()) {
+    made->source.is_held_back = is_held_back;
+    set.sources.push_back(made->source);
+    std::move(made->pairs.begin(), made->pairs.end(), std::back_inserter(set.pairs));
+  }
 }
 
 void require_both_kinds(const PairSet& set, bool is_held_back) {
@@ -138,9 +159,9 @@ PairSet read_pairs(std::span<const std::string> sources, std::span<const std::st
                    const PairConfig& config) {
   require_other_places(sources, validate, "SOURCE");
   PairSet set;
-  for (const std::string& name : sources) read_source(name, false, config, set);
+  read_sources(sources, false, config, set);
   require_both_kinds(set, false);
-  for (const std::string& name : validate) read_source(name, true, config, set);
+  read_sources(validate, true, config, set);
   require_both_kinds(set, true);
   set.sha256 = digest_of(set);
   return set;

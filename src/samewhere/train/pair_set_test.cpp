@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
+#include <samewhere/core/checksum.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/train/pair_set.hpp>
@@ -70,6 +72,48 @@ TEST(PairSet, ABuildingIsNotLearntFromAndValidatedWith) {
   const std::vector<std::string> held_back = {"twin:hotel?seed=3&similarity=0.8"};
   EXPECT_THAT(complaint([&] { read_pairs(learnt, held_back, test_pair_config()); }),
               HasSubstr("is learnt from, too"));
+}
+
+// A folder as of IE Tower, of two floors that look alike, two images each; its name.
+std::string make_tower(const input::TestFolder& folder, const std::string& name) {
+  core::Random random(core::checksum(name));
+  cv::Mat wall(240, 320, CV_8UC1, cv::Scalar(120));
+  for (int i = 0; i < 200; ++i) {
+    const cv::Point at(static_cast<int>(random.index(310)), static_cast<int>(random.index(230)));
+    const cv::Size size(6 + static_cast<int>(random.index(20)), 12);
+    cv::rectangle(wall, {at, size}, cv::Scalar(static_cast<double>(random.index(256))), cv::FILLED);
+  }
+  std::string labels = "image,floor,split,area\n";
+  std::string walk;
+  for (const std::string floor : {"floor1", "floor2"}) {
+    for (const char second : {'0', '1'}) {
+      const std::string image = floor + "/" + second + ".png";
+      folder.write_png(name + "/" + image, wall);
+      labels += image + "," + floor + ",gallery,hall\n";
+      walk += image + " " + floor + " " + floor + "_c1\n";
+    }
+  }
+  folder.write(name + "/dataset.csv", labels);
+  folder.write(name + "/walk.txt", walk);
+  return folder.at(name).string();
+}
+
+TEST(PairSet, IsTheSameWhateverTheThreads) {
+  const input::TestFolder folder;
+  std::vector<std::string> learnt;
+  for (const std::string name : {"a", "b", "c", "d", "e"})
+    learnt.push_back(make_tower(folder, name));
+  const std::vector<std::string> held_back = {make_tower(folder, "f")};
+  PairConfig config = test_pair_config();
+  config.step = 1;
+  const PairSet one = read_pairs(learnt, held_back, config);
+  config.threads = 3;
+  const PairSet three = read_pairs(learnt, held_back, config);
+  ASSERT_EQ(one.sources.size(), 6U);
+  for (std::size_t i = 0; i < one.sources.size(); ++i)
+    EXPECT_EQ(three.sources[i].source, one.sources[i].source);
+  EXPECT_TRUE(one.sources.back().is_held_back);
+  EXPECT_EQ(three.sha256, one.sha256);
 }
 
 TEST(PairSet, TheIndicesAreThoseOfTheSources) {
