@@ -80,7 +80,8 @@ void print_times_with_reading(const core::Timings& timings, double processor_ms)
   std::transform(work.begin(), work.end(), both.begin(), both.begin(), std::plus<>());
   const core::TimingSummary summary = core::summarize(both);
   fmt::print(
-      "  with reading {:.1f} ({:.1f} ms median, {:.1f} ms p95; {:.1f} ms of processor time)\n",
+      "  with reading {:.1f} frames per second ({:.1f} ms median, {:.1f} ms p95; {:.1f} ms of "
+      "processor time)\n",
       1000.0 * summary.count / summary.total_ms, summary.median_ms, summary.p95_ms,
       processor_ms / summary.count);
 }

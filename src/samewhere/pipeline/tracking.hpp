@@ -121,8 +121,8 @@ class Tracking {
   bool is_map_fixed_ = false;
   scene::MapVersion map_;  // as it is visible
   scene::LocalMap local_map_;
-  std::uint64_t num_keyframes_ = 0;   // sent to mapping, or there before
-  std::uint64_t num_given_up_ = 0;    // of these, when the map began anew
+  std::uint64_t num_keyframes_ = 0;  // sent to mapping, or there before
+  std::uint64_t num_given_up_ = 0;   // of these, when the map began anew
   int num_starts_given_up_ = 0;
   double started_at_s_ = 0.0;         // stamp of the view that the map began with
   std::uint64_t first_followed_ = 0;  // tracking was not lost since this one

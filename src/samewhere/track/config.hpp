@@ -170,12 +170,11 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
          .min = 6,
          .max = 10000});
-  visit(
-      "min_share_by_depth", config.min_share_by_depth,
-      {.help = "where features hold a weak pose or none, this share of the surfaces that both "
-               "depth pictures show must lie on each other, and holds it; above 1: never",
-       .min = 0.0,
-       .max = 1.1});
+  visit("min_share_by_depth", config.min_share_by_depth,
+        {.help = "where features hold a weak pose or none, this share of the surfaces that both "
+                 "depth pictures show must lie on each other, and holds it; above 1: never",
+         .min = 0.0,
+         .max = 1.1});
   visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});
   visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
   visit("drift", config.drift,
