@@ -54,8 +54,8 @@ struct Errors {
 struct Outcome {
   std::optional<Lie> lie;
   Aftermath aftermath;
-  Errors until_last_truth;  // later odometry is chance
-  Errors whole;
+  std::optional<Errors> until_last_truth;  // later odometry is chance; none without a lie
+  std::optional<Errors> whole;
   int num_joined_at_end = 0;  // see Joined
   int num_joined_at_end_never = 0;
 };
@@ -138,9 +138,9 @@ std::vector<std::string> row_of(const std::string& source, const Settings& setti
   const Outcome outcome = walk_twice(config, settings.lie_after);
   std::vector<std::string> row = {source, as_text(outcome.lie)};
   for (const auto& cell : cells_of(outcome)) row.push_back(cell);
-  for (const Errors& errors : {outcome.until_last_truth, outcome.whole}) {
-    row.push_back(fmt::format("{:.4f} / {:.4f}", errors.ate_m, errors.never_m));
-    row.push_back(fmt::format("{:.3f}", errors.ate_m / errors.never_m));
+  for (const auto& errors : {outcome.until_last_truth, outcome.whole}) {
+    row.push_back(errors ? fmt::format("{:.4f} / {:.4f}", errors->ate_m, errors->never_m) : "-");
+    row.push_back(errors ? fmt::format("{:.3f}", errors->ate_m / errors->never_m) : "-");
   }
   return row;
 }
