@@ -209,7 +209,8 @@ std::function<void()> set_up(CLI::App& app) {
                  "keyframes whose features and landmarks stay in memory")
       ->check(CLI::Range(1, 1000000));
   app.add_option("--close-loops", settings->close_loops, "whether loops are looked for");
-  app.add_option("--map", settings->map_file, "save the map in this new file");
+  app.add_option("--map", settings->map_file, "save the map in this new file")
+      ->check(CLI::NonexistentPath);
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

@@ -68,10 +68,11 @@ core::Frame copy_of(const core::Frame& frame) {
   return copy;
 }
 
-Outcome outcome_of(const Disturb& disturb, double right_m = kRight_m) {
+Outcome outcome_of(const Disturb& disturb, double right_m = kRight_m,
+                   const Config& config = walk_config()) {
   cv::setNumThreads(1);
   const core::Trajectory& truth = walk().truth;
-  Slam slam(walk_config());
+  Slam slam(config);
   Outcome outcome{.is_measured = std::vector<bool>(kNumFrames, false),
                   .is_right = std::vector<bool>(kNumFrames, false)};
   std::vector<std::size_t> fed;
@@ -191,6 +192,18 @@ TEST(Disturbance, WithDepthAMapThatIsLostBeforeItIsLargeIsGivenUpForANewOne) {
       outcome_of([](core::Frame frame) { return darkened(std::move(frame), 3, 80); });
   for (std::size_t i = 0; i <= 80; ++i) EXPECT_FALSE(outcome.is_measured[i]) << i;
   for (std::size_t i = 81; i < kNumFrames; ++i) EXPECT_TRUE(outcome.is_measured[i]) << i;
+}
+
+TEST(Disturbance, WithDepthAMapThatWasFollowedForAMomentIsGivenUpHoweverLarge) {
+  const auto dark = [](core::Frame frame) { return darkened(std::move(frame), 20, 80); };
+  Config config = walk_config();
+  config.track.start.provisional_keyframes = 0;
+  const Outcome given_up = outcome_of(dark, kRight_m, config);
+  for (std::size_t i = 0; i <= 80; ++i) EXPECT_FALSE(given_up.is_measured[i]) << i;
+  for (std::size_t i = 82; i < kNumFrames; ++i) EXPECT_TRUE(given_up.is_measured[i]) << i;
+  config.track.start.provisional_s = 0.0;
+  const Outcome kept = outcome_of(dark, kRight_m, config);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_TRUE(kept.is_measured[i]) << i;
 }
 
 TEST(Disturbance, ALensThatIsHalfCoveredLeavesTheOtherHalf) {

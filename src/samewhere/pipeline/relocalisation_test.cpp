@@ -245,6 +245,7 @@ TEST_F(Abducted, AMapThatHasHardlyBegunIsGivenUpForANewOne) {
   Slam slam(config_, DepthFrom::kMotion);
   walk_on(slam);
   EXPECT_EQ(num_before(slam), 0) << "poses of another world";
+  EXPECT_GE(slam.num_starts_given_up(), 1);
   EXPECT_GE(num_after(slam), 40) << "of " << kNumAfter;
   core::Trajectory trajectory = trajectory_of(slam.map(), slam.frames());
   for (auto& pose : trajectory) pose.stamp_s -= kNumBefore / 15.0;
@@ -263,6 +264,7 @@ TEST_F(Abducted, AMapThatIsToBeKeptIsKept) {
   walk_on(slam);
   EXPECT_GE(num_before(slam), 10);
   EXPECT_EQ(num_after(slam), 0) << "nobody knows where the other building is";
+  EXPECT_EQ(slam.num_starts_given_up(), 0);
 }
 
 }  // namespace

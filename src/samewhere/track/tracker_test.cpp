@@ -129,5 +129,35 @@ TEST_F(TestTracker, FewLandmarksMakeAWeakPose) {
   EXPECT_EQ(Tracker(strict).track(view, map_, moved_)->pose.status, core::FrameStatus::kWeak);
 }
 
+TEST_F(TestTracker, FeaturesRefineThePoseOfDepthPictures) {
+  const features::View view = features::test_view(world_, 1, moved_);
+  const core::Rigid3 near =
+      moved_ * core::Rigid3{core::exp_so3({0.0, 0.004, 0.0}), {0.01, 0.0, 0.0}};
+  const Track track = tracker_.track_at(view, map_, near, {});
+  EXPECT_LT(error_of(track, moved_), 0.005);
+  EXPECT_EQ(track.pose.status, core::FrameStatus::kTracking);
+}
+
+TEST_F(TestTracker, DepthPicturesHoldAWeakPoseWhereFeaturesHoldNone) {
+  const features::View nothing = features::test_view({}, 1, {});
+  const Track track = tracker_.track_at(nothing, map_, moved_, {});
+  EXPECT_EQ(error_of(track, moved_), 0.0);
+  EXPECT_EQ(track.pose.status, core::FrameStatus::kWeak);
+  EXPECT_EQ(track.pose.num_inliers, 0);
+  EXPECT_TRUE(track.pose.is_measured);
+}
+
+TEST_F(TestTracker, FeaturesThatLeadFarAwayDoNotMoveThePoseOfDepthPictures) {
+  const features::View view = features::test_view(world_, 1, moved_);
+  const core::Rigid3 elsewhere =
+      moved_ * core::Rigid3{core::exp_so3({0.0, 0.0, 0.0}), {0.0, 0.0, 0.2}};
+  TrackerSettings wide;
+  wide.track.refine_radius_px = 60.0;
+  ASSERT_TRUE(are_apart(elsewhere, moved_));
+  const Track track = Tracker(wide).track_at(view, map_, elsewhere, {});
+  EXPECT_LT(error_of(track, elsewhere), 1e-9);
+  EXPECT_EQ(track.pose.status, core::FrameStatus::kWeak);
+}
+
 }  // namespace
 }  // namespace samewhere::track
