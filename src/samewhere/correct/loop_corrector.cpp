@@ -4,6 +4,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
+#include <samewhere/optimize/lay_out.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
 
 namespace samewhere::correct {
@@ -138,6 +139,21 @@ scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
 
 namespace {
 
+// As solve_poses, of a map that has lost a loop. That had bent the poses, and from there a solver
+// may not find back; where odometry leads, it was never there. Whichever start ends better.
+scene::Edit solve_poses_without(const MapVersion& map, const optimize::Config& config) {
+  optimize::PoseGraph bent = pose_graph_of(map, config);
+  optimize::PoseGraph laid_out = bent;
+  optimize::lay_out(laid_out);
+  optimize::solve_pose_graph(bent, config);
+  optimize::solve_pose_graph(laid_out, config);
+  const bool is_better =
+      optimize::truncated_cost(laid_out, config) < optimize::truncated_cost(bent, config);
+  scene::Edit edit;
+  edit.pose_changes = moves_to(map, is_better ? laid_out : bent);
+  return edit;
+}
+
 Closing close_among_known(const MapVersion& map, const LoopEdge& loop,
                           const optimize::Config& config) {
   optimize::PoseGraph graph = pose_graph_of(map, config);
@@ -164,9 +180,10 @@ Closing close_among_known(const MapVersion& map, const LoopEdge& loop,
   }
   closing.edit.loops = closing.believed;
   // a withdrawn loop takes with it what bundles found while it was there
-  closing.edit.pose_changes = closing.withdrawn.empty()
-                                  ? moves_to(map, graph)
-                                  : solve_poses(apply(map, closing.edit), config).pose_changes;
+  closing.edit.pose_changes =
+      closing.withdrawn.empty()
+          ? moves_to(map, graph)
+          : solve_poses_without(apply(map, closing.edit), config).pose_changes;
   return closing;
 }
 
@@ -205,7 +222,7 @@ Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::
     closing.withdrawn.push_back(bent);
   }
   closing.edit.pose_changes.clear();
-  closing.edit.pose_changes = solve_poses(apply(map, closing.edit), config).pose_changes;
+  closing.edit.pose_changes = solve_poses_without(apply(map, closing.edit), config).pose_changes;
   return closing;
 }
 
@@ -213,7 +230,7 @@ scene::Edit withdraw_loop(const MapVersion& map, core::CandidateId cause,
                           const optimize::Config& config) {
   scene::Edit edit;
   edit.withdrawn_loops = {cause};
-  edit.pose_changes = solve_poses(apply(map, edit), config).pose_changes;
+  edit.pose_changes = solve_poses_without(apply(map, edit), config).pose_changes;
   return edit;
 }
 

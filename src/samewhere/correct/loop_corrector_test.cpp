@@ -281,6 +281,26 @@ TEST(WithdrawLoop, AnyLoopCanBeTakenBackWhateverCameAfterIt) {
   EXPECT_THROW(withdraw_loop(after, first.cause, {}), core::ContractError) << "withdrawn once";
 }
 
+TEST(WithdrawLoop, FindsBackHoweverTheLoopHadBentTheMap) {
+  const Walk walk = square_walk(0.01);
+  const scene::LoopEdge wrong = lie(walk, 36, 3, 0.8);
+  const scene::LoopEdge right = true_loop(walk, 40, 0);
+  const scene::MapVersion never = apply(walk.map, close_loop(walk.map, right, {}).edit);
+  scene::MapVersion map = apply(walk.map, close_loop(walk.map, wrong, {}).edit);
+  scene::Edit bent;
+  bent.loops = {right};
+  core::Random random(1);
+  for (std::size_t i = 1; i < walk.truth.size(); ++i) {
+    const core::Rigid3 somewhere{core::exp_so3({0.0, random.uniform(-3.0, 3.0), 0.0}),
+                                 {random.uniform(-9.0, 9.0), 0.0, random.uniform(-9.0, 9.0)}};
+    bent.pose_changes.push_back({map.keyframes[i].id, somewhere});
+  }
+  map = apply(map, bent);
+  ASSERT_GT(rms_error_m(walk, map), 5.0);
+  const scene::MapVersion after = apply(map, withdraw_loop(map, wrong.cause, {}));
+  EXPECT_LT(rms_error_m(walk, after), 1.02 * rms_error_m(walk, never));
+}
+
 TEST(CloseLoop, ALoopToAKeyframeThatIsNotThereIsABrokenPromise) {
   const Walk walk = square_walk(0.0);
   scene::LoopEdge loop = true_loop(walk, 40, 0);

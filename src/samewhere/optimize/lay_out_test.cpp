@@ -1,0 +1,124 @@
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <samewhere/core/random.hpp>
+#include <samewhere/optimize/lay_out.hpp>
+
+namespace samewhere::optimize {
+namespace {
+
+core::Rigid3 any_pose(core::Random& random) {
+  core::Vector6d tangent;
+  for (int i = 0; i < 6; ++i) tangent(i) = random.uniform(-2.0, 2.0);
+  return core::exp_r3so3(tangent);
+}
+
+// Nodes anywhere, of which edges know where they truly are, relative to each other.
+class LayOut : public testing::Test {
+ protected:
+  // With scales: the unit of node i has this logarithm.
+  void make(int num_nodes, const std::vector<double>& log_scales = {}) {
+    core::Random random(1);
+    for (int i = 0; i < num_nodes; ++i) {
+      truth_.push_back(any_pose(random));
+      graph_.world_from_node.push_back(any_pose(random));
+    }
+    graph_.world_from_node[0] = truth_[0];
+    true_scales_ = log_scales;
+    if (!log_scales.empty()) graph_.log_scales.assign(log_scales.size(), 0.0);
+  }
+
+  PoseEdge& join(int a, int b, bool is_loop = false) {
+    const auto of_a = static_cast<std::size_t>(a);
+    const auto of_b = static_cast<std::size_t>(b);
+    PoseEdge edge{.a = a, .b = b, .a_from_b = inverse(truth_[of_a]) * truth_[of_b]};
+    edge.is_loop = is_loop;
+    if (!true_scales_.empty()) {
+      edge.a_from_b.translation *= std::exp(-true_scales_[of_a]);
+      edge.log_scale = true_scales_[of_b] - true_scales_[of_a];
+    }
+    return graph_.edges.emplace_back(edge);
+  }
+
+  double error_of(int node) const {
+    const auto i = static_cast<std::size_t>(node);
+    return core::log_r3so3(inverse(truth_[i]) * graph_.world_from_node[i]).norm();
+  }
+
+  std::vector<core::Rigid3> truth_;
+  std::vector<double> true_scales_;
+  PoseGraph graph_;
+};
+
+TEST_F(LayOut, GoesWhereEdgesLeadWhicheverWayTheyPoint) {
+  make(5);
+  join(0, 1);
+  join(2, 1);
+  join(2, 3);
+  join(4, 3);
+  lay_out(graph_);
+  for (int node = 0; node < 5; ++node) EXPECT_LT(error_of(node), 1e-9) << node;
+}
+
+TEST_F(LayOut, OdometryGoesBeforeLoops) {
+  make(6);
+  // a lie from the first node to the last, and a longer way that is true
+  PoseEdge& lie = join(0, 5, true);
+  lie.a_from_b.translation.x() += 3.0;
+  for (int i = 1; i < 6; ++i) join(i - 1, i);
+  lay_out(graph_);
+  for (int node = 0; node < 6; ++node) EXPECT_LT(error_of(node), 1e-9) << node;
+}
+
+TEST_F(LayOut, LoopsJoinWhatOdometryDoesNot) {
+  make(4);
+  join(0, 1);
+  join(1, 3, true);
+  join(3, 2);
+  lay_out(graph_);
+  for (int node = 0; node < 4; ++node) EXPECT_LT(error_of(node), 1e-9) << node;
+}
+
+TEST_F(LayOut, WhatIsHeldStaysAndHoldsItsPart) {
+  make(4);
+  join(0, 1);
+  join(2, 3);
+  graph_.fixed_nodes = {1, 3};
+  graph_.world_from_node[1] = truth_[1];
+  graph_.world_from_node[0] = {};
+  const core::Rigid3 elsewhere = graph_.world_from_node[3];
+  lay_out(graph_);
+  EXPECT_LT(error_of(0), 1e-9);
+  EXPECT_EQ(graph_.world_from_node[3].translation, elsewhere.translation);
+  const core::Rigid3 moved = elsewhere * inverse(truth_[3]) * truth_[2];
+  EXPECT_LT(core::log_r3so3(inverse(moved) * graph_.world_from_node[2]).norm(), 1e-9);
+}
+
+TEST_F(LayOut, UnitsComeAlong) {
+  make(4, {0.0, 0.2, -0.3, 0.1});
+  join(0, 1);
+  join(2, 1);
+  join(2, 3);
+  lay_out(graph_);
+  for (int node = 0; node < 4; ++node) {
+    EXPECT_LT(error_of(node), 1e-9) << node;
+    const auto i = static_cast<std::size_t>(node);
+    EXPECT_NEAR(graph_.log_scales[i], true_scales_[i], 1e-12);
+  }
+}
+
+TEST_F(LayOut, TheTruncatedCostCountsALieNoMoreThanItsLimit) {
+  make(2);
+  join(0, 1);
+  join(0, 1, true).a_from_b.translation.x() += 100.0;
+  graph_.world_from_node = truth_;
+  EXPECT_NEAR(truncated_cost(graph_, {}), 0.5 * Config{}.loop_chi2, 1e-9);
+  graph_.edges[1].is_loop = false;
+  EXPECT_NEAR(truncated_cost(graph_, {}), 0.5 * 100.0 * 100.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace samewhere::optimize
