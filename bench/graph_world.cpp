@@ -67,13 +67,12 @@ Pose planar(double x_m, double y_m, double heading_rad) {
 }
 
 // Straight for four steps, then left, right or on; never out of a town of 100 m.
-std::vector<Pose> grid(core::Random& random) {
-  constexpr int kNumPoses = 3500;
+std::vector<Pose> grid(int num_poses, core::Random& random) {
   constexpr int kBlock = 4;
   constexpr double kHalfTown_m = 50.0;
   std::vector<Pose> poses = {Pose{}};
   int quarter = 0;
-  for (int i = 1; i < kNumPoses; ++i) {
+  for (int i = 1; i < num_poses; ++i) {
     if (i % kBlock == 0) quarter += static_cast<int>(random.uniform(0.0, 3.0)) - 1;
     for (int tries = 0; tries < 4; ++tries, ++quarter) {
       const double heading_rad = quarter * kTau / 4.0;
@@ -148,7 +147,7 @@ std::vector<std::size_t> loops_of(const GraphWorld& world) {
 }  // namespace
 
 std::string_view name_of(GraphKind kind) {
-  constexpr std::string_view kNames[] = {"sphere", "torus", "grid", "halls"};
+  constexpr std::string_view kNames[] = {"sphere", "torus", "grid", "town", "halls"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -166,7 +165,8 @@ GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t see
       loops = a_lap_before(world.world_from_node.size(), 50);
       break;
     case GraphKind::kGrid:
-      world.world_from_node = grid(random);
+    case GraphKind::kTown:
+      world.world_from_node = grid(kind == GraphKind::kGrid ? 3500 : 10000, random);
       loops = crossings(world.world_from_node);
       break;
     case GraphKind::kHalls:
@@ -175,7 +175,7 @@ GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t see
       break;
   }
   optimize::PoseGraph& graph = world.graph;
-  graph.is_planar = kind == GraphKind::kGrid || kind == GraphKind::kHalls;
+  graph.is_planar = kind != GraphKind::kSphere && kind != GraphKind::kTorus;
   const auto add = [&](int a, int b, bool is_loop) {
     const Pose a_from_b = inverse(world.world_from_node[static_cast<std::size_t>(a)]) *
                           world.world_from_node[static_cast<std::size_t>(b)];
@@ -194,6 +194,13 @@ GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t see
   }
   for (const auto& [a, b] : loops) add(a, b, true);
   world.is_lie.assign(graph.edges.size(), false);
+  return world;
+}
+
+GraphWorld with_exact_edges(GraphWorld world) {
+  for (optimize::PoseEdge& edge : world.graph.edges)
+    edge.a_from_b = inverse(world.world_from_node[static_cast<std::size_t>(edge.a)]) *
+                    world.world_from_node[static_cast<std::size_t>(edge.b)];
   return world;
 }
 

@@ -19,6 +19,7 @@ enum class GraphKind {
   kSphere,  // 50 laps of 50 poses around a ball of 50 m, each pose joined to those of the lap below
   kTorus,   // 100 laps of 50 poses around a ring, likewise
   kGrid,    // 3500 steps of 1 m along the streets of a town, joined where it crosses itself; planar
+  kTown,    // 10,000 such steps
   kHalls    // 20 rounds of 100 m through the same halls, joined to the round before; planar
 };
 
@@ -31,6 +32,9 @@ struct GraphNoise {
 };
 
 GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t seed);
+
+// The same from the same noisy start, but every edge tells the truth: the best cost is 0.
+GraphWorld with_exact_edges(GraphWorld world);
 
 // Replaces a share of the loop edges, each by one to a random other node.
 void lie_at_random(GraphWorld& world, double share, std::uint64_t seed);

@@ -59,12 +59,15 @@ void measure(const std::string& csv_file) {
   Table table{{"graph", "poses", "edges", "solver", "seconds", "cost before", "cost after",
                "cost of the truth", "ATE m"},
               {}};
-  for (const auto kind : {GraphKind::kSphere, GraphKind::kTorus, GraphKind::kGrid}) {
+  for (const auto kind :
+       {GraphKind::kSphere, GraphKind::kTorus, GraphKind::kGrid, GraphKind::kTown}) {
     const std::string name(name_of(kind));
-    add_rows(make_graph(kind, {}, 1000), name, table);
+    const GraphWorld world = make_graph(kind, {}, 1000);
+    add_rows(world, name, table);
     // odometry alone is noisy: the start is as bad, and the best cost is that of odometry's noise
     add_rows(make_graph(kind, {.sigma_m = 0.01, .sigma_rad = 0.005}, 1000), name + ", little noise",
              table);
+    add_rows(with_exact_edges(world), name + ", exact edges", table);
   }
   publish(table, csv_file);
 }

@@ -27,11 +27,19 @@ core::Rigid3 as_ours(const mrpt::poses::CPose3D& pose) {
   return {Eigen::Quaterniond(q.r(), q.x(), q.y(), q.z()), {found.x(), found.y(), found.z()}};
 }
 
+// As far as it gets: ten times its own iterations, and steps a million times smaller than those at
+// which it stops by itself.
+constexpr std::size_t kMaxIterations = 1000;
+constexpr double kSmallestStep = 1e-12;
+
 template <class Network>
 void solve(Network& network) {
   network.root = 0;
   mrpt::graphslam::TResultInfoSpaLevMarq outcome;
-  mrpt::graphslam::optimize_graph_spa_levmarq(network, outcome);
+  mrpt::containers::yaml until = mrpt::containers::yaml::Map();
+  until["max_iterations"] = kMaxIterations;
+  until["e2"] = kSmallestStep;
+  mrpt::graphslam::optimize_graph_spa_levmarq(network, outcome, nullptr, until);
 }
 
 void solve_in_space(optimize::PoseGraph& graph) {

@@ -138,8 +138,9 @@ core::Timings Slam::timings() const {
   timings.add(mapping_.timings());
   timings.add(loop_closing_.timings());
   timings.add(bundling_.timings());
-  for (const double duration_ms : timings.durations_beside("track", "full bundle"))
-    timings.add("track beside full bundle", duration_ms);
+  for (const std::string other : {"verify", "correct", "full bundle"})
+    for (const double duration_ms : timings.durations_beside("track", other))
+      timings.add("track beside " + other, duration_ms);
   return timings;
 }
 
