@@ -69,6 +69,26 @@ scene::LoopEdge true_loop(const Walk& walk, int query, int match) {
   return loop;
 }
 
+TEST(PoseGraphOf, HasAnEdgeFromEachKeyframesParentAndOneOfEachLoop) {
+  const Walk walk = square_walk(0.002);
+  scene::MapVersion map = apply(walk.map, close_loop(walk.map, true_loop(walk, 38, 2), {}).edit);
+  map = apply(map, close_loop(map, true_loop(walk, 40, 0), {}).edit);
+  const optimize::PoseGraph graph = pose_graph_of(map, {});
+  ASSERT_EQ(graph.world_from_node.size(), 41U);
+  ASSERT_EQ(graph.edges.size(), 42U);
+  for (int i = 1; i <= 40; ++i) {
+    const optimize::PoseEdge& edge = graph.edges[static_cast<std::size_t>(i - 1)];
+    EXPECT_EQ(edge.a, i - 1);
+    EXPECT_EQ(edge.b, i);
+    EXPECT_FALSE(edge.is_loop);
+  }
+  EXPECT_TRUE(graph.edges[40].is_loop);
+  EXPECT_EQ(graph.edges[40].a, 2);
+  EXPECT_EQ(graph.edges[40].b, 38);
+  EXPECT_EQ(graph.edges[41].a, 0);
+  EXPECT_EQ(graph.edges[41].b, 40);
+}
+
 TEST(CloseLoop, ATrueLoopTakesTheDriftOut) {
   const Walk walk = square_walk(0.01);
   const double before = worst_error_m(walk, walk.map);
