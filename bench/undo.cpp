@@ -25,6 +25,7 @@ struct Settings {
   int lie_after = 20;  // keyframes
   double doubt = 12.0;
   int num_frames = 0;  // 0: the whole walk
+  bool is_control = false;
   std::string csv_file;
 };
 
@@ -60,8 +61,22 @@ struct Outcome {
   int num_joined_at_end_never = 0;
 };
 
-// Both walk side by side: each sees a frame when the other does.
-Outcome walk_twice(const pipeline::Config& config, int lie_after) {
+// What ought to change nothing: a thousandth more features.
+pipeline::Config hardly_changed(pipeline::Config config) {
+  config.features.num_features += 1;
+  return config;
+}
+
+pipeline::SlamHooks never_lied_to(const Liar& liar, Witness& witness) {
+  pipeline::SlamHooks hooks;
+  hooks.lie = [&](const auto& question, auto& answer) { liar.answer_honestly(question, answer); };
+  hooks.keep_map = [&](const auto& map, const auto&) { witness.see_honest(map); };
+  return hooks;
+}
+
+// Both walk side by side: each sees a frame when the other does. In a control nobody is lied to,
+// and what ought to change nothing is changed for the first.
+Outcome walk_twice(const pipeline::Config& config, int lie_after, bool is_control) {
   const auto source = pipeline::open_source(config);
   const core::Truth truth = source->truth();
   Liar liar(config, lie_after, truth);
@@ -69,15 +84,17 @@ Outcome walk_twice(const pipeline::Config& config, int lie_after) {
   const pipeline::Config in_frames = with_window_in_frames(config, source->info());
   using pipeline::Slam;
   pipeline::SlamHooks lied_to;
-  lied_to.lie = [&](const auto& question, auto& answer) { liar.answer(question, answer); };
-  lied_to.keep_map = [&](const auto& map, const auto&) { witness.see_believer(map); };
-  Slam believer(in_frames, pipeline::DepthFrom::kSensor, lied_to);
-  pipeline::SlamHooks not_lied_to;
-  not_lied_to.lie = [&](const auto& question, auto& answer) {
+  lied_to.lie = [&](const auto& question, auto& answer) {
+    const pipeline::LoopAnswer of_judge = answer;
+    liar.answer(question, answer);
+    if (!is_control) return;
+    answer = of_judge;
     liar.answer_honestly(question, answer);
   };
-  not_lied_to.keep_map = [&](const auto& map, const auto&) { witness.see_honest(map); };
-  Slam honest(in_frames, pipeline::DepthFrom::kSensor, not_lied_to);
+  lied_to.keep_map = [&](const auto& map, const auto&) { witness.see_believer(map); };
+  Slam believer(is_control ? hardly_changed(in_frames) : in_frames, pipeline::DepthFrom::kSensor,
+                lied_to);
+  Slam honest(in_frames, pipeline::DepthFrom::kSensor, never_lied_to(liar, witness));
   while (const auto frame = source->next()) {
     believer.feed(*frame);
     honest.feed(*frame);
@@ -135,7 +152,7 @@ std::vector<std::string> row_of(const std::string& source, const Settings& setti
   config.threads = false;
   config.twin.num_frames = settings.num_frames;
   doubt_odometry(config, settings.doubt);
-  const Outcome outcome = walk_twice(config, settings.lie_after);
+  const Outcome outcome = walk_twice(config, settings.lie_after, settings.is_control);
   std::vector<std::string> row = {source, as_text(outcome.lie)};
   for (const auto& cell : cells_of(outcome)) row.push_back(cell);
   for (const auto& errors : {outcome.until_last_truth, outcome.whole}) {
@@ -178,6 +195,8 @@ std::function<void()> set_up(CLI::App& app) {
       ->check(CLI::Range(1.0, 1000.0));
   app.add_option("--frames", settings->num_frames, "of a walk; 0: all")
       ->check(CLI::Range(0, 1000000));
+  app.add_flag("--control", settings->is_control,
+               "nobody is lied to; one of the two has a feature more in each frame");
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }
