@@ -18,6 +18,10 @@ constexpr int kMaxChecks = 10;  // of sides changed after the rounds
 constexpr double kPlanarShare = 11.34 / 16.81;
 constexpr double kScaledShare = 18.48 / 16.81;
 
+// Of refused loops that agree, see call_back_those_that_agree.
+constexpr int kNear = 50;  // nodes between their ends: what lies between is known well
+constexpr std::size_t kMaxGroups = 20;
+
 // Of stretches of loops that lie alike, see outvote_worst.
 constexpr std::size_t kMinQuarrel = 3;   // loops that were refused: chance refuses one
 constexpr std::size_t kMaxGap = 3;       // loops between two of them that were not
@@ -84,6 +88,7 @@ void Graduation::ask_all(PoseGraphSummary& summary) {
   graduate(limit_ / (2.0 * worst - limit_), summary);
   settle(summary);
   for (const double reach : kReaches) call_back(reach, summary);
+  call_back_those_that_agree(summary);
   while (outvote_worst(summary)) {
   }
 }
@@ -196,6 +201,56 @@ void Graduation::call_back(double reach, PoseGraphSummary& summary) {
   graduate(1.0 / reach, summary);
   settle(summary);
   if (truncated_cost() >= cost) go_back(before);
+}
+
+// Whether two loops between nearby nodes say the same, where the graph knows the ways between their
+// ends as well as it knows as many edges.
+bool Graduation::agree(const PoseEdge& one, const PoseEdge& other) const {
+  const int num_between = std::abs(one.a - other.a) + std::abs(one.b - other.b);
+  if (std::abs(one.a - other.a) > kNear || std::abs(one.b - other.b) > kNear) return false;
+  const auto pose = [&](int node) {
+    return graph_.world_from_node[static_cast<std::size_t>(node)];
+  };
+  const core::Rigid3 foretold = inverse(inverse(pose(one.a)) * pose(other.a)) * one.a_from_b *
+                                (inverse(pose(one.b)) * pose(other.b));
+  const core::Vector6d error = edge_error(other, core::Rigid3{}, foretold);
+  return error.dot(other.information * error) <= (2.0 + num_between) * limit_;
+}
+
+// Refused loops that agree with each other, in groups, the largest first.
+std::vector<std::vector<std::size_t>> Graduation::refused_that_agree() const {
+  std::vector<std::vector<std::size_t>> groups;
+  for (const std::size_t loop : loops_) {
+    if (problem_.weights()[loop] > 0.0 || outvoted_[loop]) continue;
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return agree(graph_.edges[group.back()], graph_.edges[loop]);
+    });
+    if (known == groups.end()) {
+      groups.push_back({loop});
+    } else {
+      known->push_back(loop);
+    }
+  }
+  std::erase_if(groups, [](const auto& group) { return group.size() < 2; });
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const auto& one, const auto& other) { return one.size() > other.size(); });
+  if (groups.size() > kMaxGroups) groups.resize(kMaxGroups);
+  return groups;
+}
+
+// Where a long way hangs on a few loops, all of them may have been refused together: each fits only
+// where the others would have put the graph. Those that say the same are believed for once; kept
+// if that makes the whole fit better.
+void Graduation::call_back_those_that_agree(PoseGraphSummary& summary) {
+  if (has_scales(graph_)) return;
+  for (const auto& group : refused_that_agree()) {
+    const State before = state();
+    const double cost = truncated_cost();
+    for (const std::size_t loop : group) problem_.weight(loop) = 1.0;
+    go_on(config_.graph_iterations, summary);
+    settle(summary);
+    if (truncated_cost() >= cost) go_back(before);
+  }
 }
 
 // Whether every weight is 0 or 1.

@@ -261,6 +261,56 @@ TEST(PoseGraphOfLies, ALoopThatFitsOnlyBesideOneInDoubtIsBelievedWithIt) {
   EXPECT_EQ(weights[kSteps + 1], 1.0);
 }
 
+// A long way out that comes back once: two loops near its end are true, all others lie.
+struct LongWay {
+  Laps walk;
+  std::size_t first_true = 0;  // edge
+};
+
+LongWay long_way(core::Random& random, int num_lies) {
+  constexpr int kSide = 100;
+  LongWay way;
+  PoseGraph& graph = way.walk.graph;
+  std::vector<core::Rigid3>& truth = way.walk.truth;
+  truth = graph.world_from_node = {core::Rigid3{}};
+  const auto join = [&](int a, int b, const core::Rigid3& a_from_b, bool is_loop) {
+    graph.edges.push_back({a, b, a_from_b * noise(random), honest_information(), is_loop});
+  };
+  for (int i = 1; i <= 4 * kSide; ++i) {
+    const core::Rigid3 step{core::exp_so3({0.0, i % kSide == 0 ? 1.5707963 : 0.0, 0.0}),
+                            {0.0, 0.0, 1.0}};
+    truth.push_back(truth.back() * step);
+    join(i - 1, i, step, false);
+    graph.world_from_node.push_back(graph.world_from_node.back() * graph.edges.back().a_from_b);
+  }
+  way.first_true = graph.edges.size();
+  for (const int match : {0, 6}) {
+    const int query = 4 * kSide - match;
+    join(match, query,
+         inverse(truth[static_cast<std::size_t>(match)]) * truth[static_cast<std::size_t>(query)],
+         true);
+  }
+  for (int i = 0; i < num_lies; ++i) {
+    const int b = static_cast<int>(random.uniform(20.0, 4.0 * kSide));
+    join(static_cast<int>(random.uniform(0.0, b - 10.0)), b, {}, true);
+  }
+  return way;
+}
+
+TEST(PoseGraphOfLies, TwoThatAgreeAreAskedTogetherWhereEachAloneWouldBeRefused) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    core::Random random(seed);
+    auto [walk, first_true] = long_way(random, 30);
+    const double before_m = ate_m(walk);
+    const PoseGraphSummary summary = solve_pose_graph(walk.graph, {});
+    EXPECT_EQ(summary.weights[first_true], 1.0) << seed;
+    EXPECT_EQ(summary.weights[first_true + 1], 1.0) << seed;
+    for (std::size_t i = first_true + 2; i < walk.graph.edges.size(); ++i)
+      EXPECT_EQ(summary.weights[i], 0.0) << i;
+    EXPECT_LT(ate_m(walk), 0.4 * before_m);
+  }
+}
+
 TEST(PoseGraphOfLies, TheOnlyLoopIsBelievedIfOdometryMayErrThatMuch) {
   core::Random random(13);
   Laps walk = laps(random, 2);
