@@ -240,12 +240,14 @@ std::vector<std::vector<std::size_t>> Graduation::refused_that_agree() const {
 
 // Where a long way hangs on a few loops, all of them may have been refused together: each fits only
 // where the others would have put the graph. Those that say the same are believed for once; kept
-// if that makes the whole fit better.
+// if that makes the whole fit better. They are one claim: all but one gain no more than a true loop
+// costs in the mean, or look-alikes would win by their number.
 void Graduation::call_back_those_that_agree(PoseGraphSummary& summary) {
   if (has_scales(graph_)) return;
+  const double gain_of_number = limit_ - degrees_of_freedom(graph_);
   for (const auto& group : refused_that_agree()) {
     const State before = state();
-    const double cost = truncated_cost();
+    const double cost = truncated_cost() - static_cast<double>(group.size() - 1) * gain_of_number;
     for (const std::size_t loop : group) problem_.weight(loop) = 1.0;
     go_on(config_.graph_iterations, summary);
     settle(summary);
