@@ -145,10 +145,8 @@ scene::Edit solve_poses_without(const MapVersion& map, const optimize::Config& c
   optimize::PoseGraph bent = pose_graph_of(map, config);
   optimize::PoseGraph laid_out = bent;
   optimize::lay_out(laid_out);
-  optimize::solve_pose_graph(bent, config);
-  optimize::solve_pose_graph(laid_out, config);
-  const bool is_better =
-      optimize::truncated_cost(laid_out, config) < optimize::truncated_cost(bent, config);
+  const double cost_of_bent = optimize::solve_pose_graph(bent, config).robust_cost;
+  const bool is_better = optimize::solve_pose_graph(laid_out, config).robust_cost < cost_of_bent;
   scene::Edit edit;
   edit.pose_changes = moves_to(map, is_better ? laid_out : bent);
   return edit;

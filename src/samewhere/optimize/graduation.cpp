@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <samewhere/optimize/graduation.hpp>
+#include <samewhere/optimize/loops_that_agree.hpp>
 
 namespace samewhere::optimize {
 namespace {
@@ -17,10 +18,6 @@ constexpr int kMaxChecks = 10;  // of sides changed after the rounds
 // chi-square 99 %: 3 and 7 degrees of freedom for 6
 constexpr double kPlanarShare = 11.34 / 16.81;
 constexpr double kScaledShare = 18.48 / 16.81;
-
-// Of refused loops that agree, see call_back_those_that_agree.
-constexpr int kNear = 50;  // nodes between their ends: what lies between is known well
-constexpr std::size_t kMaxGroups = 20;
 
 // Of stretches of loops that lie alike, see outvote_worst.
 constexpr std::size_t kMinQuarrel = 3;   // loops that were refused: chance refuses one
@@ -74,6 +71,7 @@ PoseGraphSummary Graduation::solve_each() {
 // With the weights as they are now, and what is left with them.
 PoseGraphSummary Graduation::weighed(PoseGraphSummary summary) const {
   summary.weights = problem_.weights();
+  summary.robust_cost = 0.5 * truncated_cost();
   summary.final_cost = 0.0;
   for (std::size_t i = 0; i < graph_.edges.size(); ++i)
     summary.final_cost += 0.5 * summary.weights[i] * chi2_of(graph_, graph_.edges[i]);
@@ -88,9 +86,9 @@ void Graduation::ask_all(PoseGraphSummary& summary) {
   graduate(limit_ / (2.0 * worst - limit_), summary);
   settle(summary);
   for (const double reach : kReaches) call_back(reach, summary);
-  call_back_those_that_agree(summary);
-  while (outvote_worst(summary)) {
-  }
+  do {
+    call_back_those_that_agree(summary);
+  } while (outvote_worst(summary));
 }
 
 void Graduation::go_on(int max_iterations, PoseGraphSummary& summary) {
@@ -203,41 +201,6 @@ void Graduation::call_back(double reach, PoseGraphSummary& summary) {
   if (truncated_cost() >= cost) go_back(before);
 }
 
-// Whether two loops between nearby nodes say the same, where the graph knows the ways between their
-// ends as well as it knows as many edges.
-bool Graduation::agree(const PoseEdge& one, const PoseEdge& other) const {
-  const int num_between = std::abs(one.a - other.a) + std::abs(one.b - other.b);
-  if (std::abs(one.a - other.a) > kNear || std::abs(one.b - other.b) > kNear) return false;
-  const auto pose = [&](int node) {
-    return graph_.world_from_node[static_cast<std::size_t>(node)];
-  };
-  const core::Rigid3 foretold = inverse(inverse(pose(one.a)) * pose(other.a)) * one.a_from_b *
-                                (inverse(pose(one.b)) * pose(other.b));
-  const core::Vector6d error = edge_error(other, core::Rigid3{}, foretold);
-  return error.dot(other.information * error) <= (2.0 + num_between) * limit_;
-}
-
-// Refused loops that agree with each other, in groups, the largest first.
-std::vector<std::vector<std::size_t>> Graduation::refused_that_agree() const {
-  std::vector<std::vector<std::size_t>> groups;
-  for (const std::size_t loop : loops_) {
-    if (problem_.weights()[loop] > 0.0 || outvoted_[loop]) continue;
-    const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
-      return agree(graph_.edges[group.back()], graph_.edges[loop]);
-    });
-    if (known == groups.end()) {
-      groups.push_back({loop});
-    } else {
-      known->push_back(loop);
-    }
-  }
-  std::erase_if(groups, [](const auto& group) { return group.size() < 2; });
-  std::stable_sort(groups.begin(), groups.end(),
-                   [](const auto& one, const auto& other) { return one.size() > other.size(); });
-  if (groups.size() > kMaxGroups) groups.resize(kMaxGroups);
-  return groups;
-}
-
 // Where a long way hangs on a few loops, all of them may have been refused together: each fits only
 // where the others would have put the graph. Those that say the same are believed for once; kept
 // if that makes the whole fit better. They are one claim: all but one gain no more than a true loop
@@ -245,12 +208,21 @@ std::vector<std::vector<std::size_t>> Graduation::refused_that_agree() const {
 void Graduation::call_back_those_that_agree(PoseGraphSummary& summary) {
   if (has_scales(graph_)) return;
   const double gain_of_number = limit_ - degrees_of_freedom(graph_);
-  for (const auto& group : refused_that_agree()) {
+  std::vector<std::size_t> refused;
+  for (const std::size_t loop : loops_)
+    if (problem_.weights()[loop] == 0.0 && !outvoted_[loop]) refused.push_back(loop);
+  for (auto group : loops_that_agree(graph_, refused, limit_)) {
+    // believed since, with another group
+    std::erase_if(group, [&](std::size_t loop) { return problem_.weights()[loop] > 0.0; });
+    if (group.size() < 2) continue;
     const State before = state();
     const double cost = truncated_cost() - static_cast<double>(group.size() - 1) * gain_of_number;
     for (const std::size_t loop : group) problem_.weight(loop) = 1.0;
     go_on(config_.graph_iterations, summary);
-    settle(summary);
+    const auto num_fitting = std::count_if(group.begin(), group.end(), [&](std::size_t loop) {
+      return chi2_of(graph_, graph_.edges[loop]) <= limit_;
+    });
+    if (2 * num_fitting >= std::ssize(group)) settle(summary);
     if (truncated_cost() >= cost) go_back(before);
   }
 }

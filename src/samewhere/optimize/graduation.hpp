@@ -46,8 +46,6 @@ class Graduation {
   double truncated_cost() const;
   void graduate(double control, PoseGraphSummary& summary);
   void call_back(double reach, PoseGraphSummary& summary);
-  bool agree(const PoseEdge& one, const PoseEdge& other) const;
-  std::vector<std::vector<std::size_t>> refused_that_agree() const;
   void call_back_those_that_agree(PoseGraphSummary& summary);
   bool weigh(double control);
   void settle(PoseGraphSummary& summary);

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <vector>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/optimize/lay_out.hpp>
 
 namespace samewhere::optimize {
@@ -14,7 +14,11 @@ class Layout {
       : graph_(graph),
         edges_of_(graph.world_from_node.size()),
         is_placed_(graph.world_from_node.size(), false) {
+    const auto is_there = [&](int node) {
+      return node >= 0 && static_cast<std::size_t>(node) < graph.world_from_node.size();
+    };
     for (const PoseEdge& edge : graph.edges) {
+      core::require(is_there(edge.a) && is_there(edge.b), "an edge joins nodes that are there");
       edges_of_[static_cast<std::size_t>(edge.a)].push_back(&edge);
       edges_of_[static_cast<std::size_t>(edge.b)].push_back(&edge);
     }
@@ -82,14 +86,5 @@ class Layout {
 }  // namespace
 
 void lay_out(PoseGraph& graph) { Layout(graph).go(); }
-
-double truncated_cost(const PoseGraph& graph, const Config& config) {
-  double cost = 0.0;
-  for (const PoseEdge& edge : graph.edges) {
-    const double chi2 = chi2_of(graph, edge);
-    cost += 0.5 * (edge.is_loop ? std::min(chi2, config.loop_chi2) : chi2);
-  }
-  return cost;
-}
 
 }  // namespace samewhere::optimize

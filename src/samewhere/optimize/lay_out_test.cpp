@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/optimize/lay_out.hpp>
 
@@ -110,14 +111,10 @@ TEST_F(LayOut, UnitsComeAlong) {
   }
 }
 
-TEST_F(LayOut, TheTruncatedCostCountsALieNoMoreThanItsLimit) {
+TEST_F(LayOut, AnEdgeToANodeThatIsNotThereIsABrokenPromise) {
   make(2);
-  join(0, 1);
-  join(0, 1, true).a_from_b.translation.x() += 100.0;
-  graph_.world_from_node = truth_;
-  EXPECT_NEAR(truncated_cost(graph_, {}), 0.5 * Config{}.loop_chi2, 1e-9);
-  graph_.edges[1].is_loop = false;
-  EXPECT_NEAR(truncated_cost(graph_, {}), 0.5 * 100.0 * 100.0, 1e-6);
+  join(0, 1).b = 2;
+  EXPECT_THROW(lay_out(graph_), core::ContractError);
 }
 
 }  // namespace

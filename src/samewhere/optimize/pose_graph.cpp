@@ -104,6 +104,7 @@ PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config) {
   if (config.loop_loss == LoopLoss::kGnc) return Graduation(graph, config).solve();
   if (config.loop_loss == LoopLoss::kGncEach) return Graduation(graph, config).solve_each();
   PoseGraphSummary summary = EdgeProblem(graph, config).solve(config.graph_iterations);
+  summary.robust_cost = summary.final_cost;
   for (const PoseEdge& edge : graph.edges)
     summary.weights.push_back(edge.is_loop ? weight_of(chi2_of(graph, edge), config) : 1.0);
   return summary;

@@ -44,6 +44,10 @@ struct PoseGraphSummary {
   double initial_cost = 0.0;  // half of the squared errors, in variances, of the edges believed
   double final_cost = 0.0;
   int num_iterations = 0;
+  // What the loss makes as small as it can, to tell which of two starts ended better: final_cost,
+  // and with kGnc half of the limit for each loop that is refused; a stretch refused as a whole is
+  // one.
+  double robust_cost = 0.0;
   // Per edge: 0 if it was refused, 1 if it is believed, between where it counts less. Those that
   // are no loops have 1.
   std::vector<double> weights;
@@ -54,13 +58,13 @@ struct PoseGraphSummary {
 // Antonante, Tzoumas and Carlone, RA-L 2020), then a check of every loop edge against
 // Config::loop_chi2 (of 6 degrees of freedom; as likely a value where there are 3 or 7) in the
 // graph as it came out, and up to ten solutions more until no edge changes sides; what was refused
-// is asked again three times, from nearer and nearer, and what says the same once together. Where
-// all fit but for the one that is bent most, that one is refused and nothing else is asked. Loops
-// are taken in the order of their later nodes: a stretch of them at whose ends many were refused
-// counts as one claim, and is refused as a whole if that makes the rest fit. kGncEach: the
-// published method alone, without check, asking again and claims. kDcs: Agarwal et al., ICRA 2013.
-// Throws ContractError for an edge to a node that is not there, and for scales of some nodes alone
-// or of a planar graph.
+// is asked again three times, from nearer and nearer, and refused loops that say the same once
+// together, as one claim (not in a graph with scales). Where all fit but for the one that is bent
+// most, that one is refused and nothing else is asked. Loops are taken in the order of their later
+// nodes: a stretch of them at whose ends many were refused counts as one claim, and is refused as a
+// whole if that makes the rest fit. kGncEach: the published method alone, without check, asking
+// again and claims. kDcs: Agarwal et al., ICRA 2013. Throws ContractError for an edge to a node
+// that is not there, and for scales of some nodes alone or of a planar graph.
 PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config);
 
 // Error of an edge, not whitened, of nodes that share one unit.

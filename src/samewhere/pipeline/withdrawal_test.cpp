@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <samewhere/correct/loop_corrector.hpp>
 #include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/pipeline/test_rooms.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
@@ -27,6 +28,9 @@ TEST_F(LookAlikeRooms, AWrongLoopMakesThemOneAndWithoutItTheyAreTwo) {
   ASSERT_EQ(believed.loops.size(), 1U);
   ASSERT_GT(num_seen_in_both_rooms(believed), 100) << "without fused landmarks this shows nothing";
   EXPECT_GT(rmse_m(believed), 2.0);
+  EXPECT_EQ(correct::pose_graph_of(believed, config_.optimize).edges.size(),
+            num_live(believed.keyframes))
+      << "a parent of each but the first, and the loop: who shares landmarks has no edge";
   const MapVersion after = without_loop(believed, kLie, config_);
   EXPECT_EQ(survivors(after), survivors(map_));
   EXPECT_EQ(num_seen_in_both_rooms(after), 0);
