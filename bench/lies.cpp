@@ -84,10 +84,14 @@ std::string name_of(const Case& one) {
 }
 
 // Walk by walk.
-double median_ratio(const std::vector<double>& ate_m, const std::vector<double>& best_m) {
+std::vector<double> ratios_of(const std::vector<double>& ate_m, const std::vector<double>& best_m) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < ate_m.size(); ++i) ratios.push_back(ate_m[i] / best_m[i]);
-  return *core::median(ratios);
+  return ratios;
+}
+
+double worst_of(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
 }
 
 void add_rows(const Case& one, const Settings& settings, Table& table) {
@@ -101,14 +105,15 @@ void add_rows(const Case& one, const Settings& settings, Table& table) {
   }
   for (std::size_t i = 0; i < by_loss.size(); ++i) {
     const Findings& found = by_loss[i];
-    table.rows.push_back(
-        {name_of(one), one.lie_name, fmt::format("{:.0f} %", 100 * one.share), kLosses[i].name,
-         fmt::format("{:.3f}", *core::median(best.ate_m)),
-         fmt::format("{:.3f}", *core::median(found.ate_m)),
-         fmt::format("{:.3f}", *std::max_element(found.ate_m.begin(), found.ate_m.end())),
-         fmt::format("{:.2f}", median_ratio(found.ate_m, best.ate_m)),
-         fmt::format("{} of {}", found.num_believed_lies, found.num_lies),
-         fmt::format("{} of {}", found.num_refused_true, found.num_true)});
+    const std::vector<double> ratios = ratios_of(found.ate_m, best.ate_m);
+    table.rows.push_back({name_of(one), one.lie_name, fmt::format("{:.0f} %", 100 * one.share),
+                          kLosses[i].name, fmt::format("{:.3f}", *core::median(best.ate_m)),
+                          fmt::format("{:.3f}", *core::median(found.ate_m)),
+                          fmt::format("{:.3f}", worst_of(found.ate_m)),
+                          fmt::format("{:.2f}", *core::median(ratios)),
+                          fmt::format("{:.2f}", worst_of(ratios)),
+                          fmt::format("{} of {}", found.num_believed_lies, found.num_lies),
+                          fmt::format("{} of {}", found.num_refused_true, found.num_true)});
   }
 }
 
@@ -128,7 +133,7 @@ std::vector<Case> cases() {
 
 void measure(const Settings& settings) {
   Table table{{"graph", "lies", "share", "loss", "ATE m without the lies", "ATE m", "worst",
-               "ratio", "lies believed", "true refused"},
+               "ratio", "worst ratio", "lies believed", "true refused"},
               {}};
   const std::vector<Case> all = cases();
   core::Progress progress("cases", static_cast<int>(all.size()));
