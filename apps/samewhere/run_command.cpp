@@ -173,6 +173,7 @@ void add_map_options(CLI::App& sub, RunCommand& command) {
 CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, Work work,
                              int& exit_code) {
   auto command = std::make_shared<RunCommand>();
+  if (work == Work::kRecognition) command->config.profile = "recognition";
   CLI::App* sub = app.add_subcommand(name, what);
   sub->add_option(
          "SOURCE", command->source,

@@ -41,7 +41,7 @@ TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
   EXPECT_NE(grown.out.find("features in 3 pictures"), std::string::npos) << grown.out;
   EXPECT_NE(core::read_file(path("mine.json")).find("\"num_pictures\": 3"), std::string::npos);
   const std::string loops = fmt::format(
-      "loops {} --set retrieve.window_frames=2 --set retrieve.num_candidates=1 "
+      "loops {} --profile default --set retrieve.window_frames=2 --set retrieve.num_candidates=1 "
       "--set retrieve.word_candidates=3 --out {} --set retrieve.vocabulary=",
       walk, quoted(path("out")));
   const Outcome found = run(loops + quoted(path("mine.bin")));

@@ -23,8 +23,9 @@ class Golden : public testing::Test {
   }
 
   pipeline::Config config_of(const std::string& name,
-                             const std::vector<std::string>& assignments = {}) const {
-    pipeline::Config config = pipeline::load_config("default", "", assignments);
+                             const std::vector<std::string>& assignments = {},
+                             const std::string& profile = "default") const {
+    pipeline::Config config = pipeline::load_config(profile, "", assignments);
     config.source = data_ + "/" + name;
     return config;
   }
@@ -81,7 +82,8 @@ TEST_F(Golden, AlmostPureRotationIsTrackedToTheEnd) {
 // Two laps through a corridor of near-identical doors, from pictures alone; the best peer closes 43
 // of the 44 loops.
 TEST_F(Golden, TheSecondLapThroughTheCorridorIsFoundFromPicturesAlone) {
-  const pipeline::Config config = config_of("rtabmap_corridor", {"retrieve.window_frames=19"});
+  const pipeline::Config config =
+      config_of("rtabmap_corridor", {"retrieve.window_frames=19"}, "recognition");
   auto source = pipeline::open_source(config);
   const core::Truth truth = source->truth();
   const pipeline::RunOutcome outcome = pipeline::run_recognition(std::move(source), config);

@@ -11,9 +11,10 @@
 
 namespace samewhere::core {
 
-// Two views that look alike, found by appearance only, or, foretold, because the views before them
-// matched: such a one may hang on a sequence, but proves nothing of it. Of a lost view: if the
-// judge accepts it, it is a place where the view may have been taken, and no loop.
+// Two views that look alike, found by appearance only, or by what their features vote for, or,
+// foretold, because the views before them or beside them matched: neither of these two may prove a
+// sequence, for they were looked for because they fit. Of a lost view: if the judge accepts it, it
+// is a place where the view may have been taken, and no loop.
 struct Candidate {
   CandidateId id;
   FrameId query;
@@ -21,6 +22,7 @@ struct Candidate {
   double similarity = 0.0;  // of the two descriptors, in [-1, 1]
   bool is_foretold = false;
   bool is_lost = false;
+  bool is_by_features = false;
 };
 
 // What geometry says about a candidate.
@@ -29,6 +31,7 @@ struct GeometryEvidence {
   int num_inliers = 0;  // of these, consistent with one relative pose (or one fundamental matrix)
   double inlier_ratio = 0.0;          // num_inliers / num_matches
   double spread_ratio = 0.0;          // share of the query image's 8 x 8 cells that hold an inlier
+  double overlap_ratio = 0.0;         // of either picture about so much lies in the other
   double reprojection_rmse_px = 0.0;  // of the inliers
   // Body of the match from body of the query; none without depth.
   std::optional<Sim3> match_from_query;

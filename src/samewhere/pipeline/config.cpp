@@ -3,7 +3,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/pipeline/config.hpp>
-#include <samewhere/pipeline/paper_profile.hpp>
+#include <samewhere/pipeline/profiles.hpp>
 
 namespace samewhere::pipeline {
 
@@ -13,13 +13,17 @@ features::Config features_of_lost(const Config& config, bool is_without_depth) {
   return features;
 }
 
-std::vector<std::string> profile_names() { return {"default", "paper"}; }
+std::vector<std::string> profile_names() { return {"default", "recognition", "paper"}; }
 
 Config profile(const std::string& name) {
   Config config;
   if (name == "default") return config;
   if (name == "paper") {
     core::read_config(config, kPaperProfile, "configs/paper.yaml");
+    return config;
+  }
+  if (name == "recognition") {
+    core::read_config(config, kRecognitionProfile, "configs/recognition.yaml");
     return config;
   }
   throw core::InputError(fmt::format("unknown profile {}; expected one of: {}", name,

@@ -61,7 +61,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
 // against others. A loop, which bends the map, is judged by config.features as it is.
 features::Config features_of_lost(const Config& config, bool is_without_depth);
 
-// Names of the built-in profiles: "default", "paper".
+// Names of the built-in profiles: "default", "recognition" (of `samewhere loops`), "paper".
 std::vector<std::string> profile_names();
 
 // A built-in profile. Throws InputError naming the known ones.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/pipeline/config.hpp>
 
 namespace samewhere::pipeline {
@@ -17,6 +18,28 @@ TEST(Profiles, DefaultLooksForCornersInThePictureItselfAndStartsFromTheBetterMod
   EXPECT_FALSE(usual.features.denoise);
   EXPECT_FALSE(usual.features.equalize);
   EXPECT_EQ(usual.track.start.model, track::StartModel::kHomographyOrEssential);
+}
+
+TEST(Profiles, RecognitionLooksHarderAndElseIsTheDefault) {
+  const Config usual = profile("default");
+  Config alone = profile("recognition");
+  EXPECT_GT(alone.features.num_features, usual.features.num_features);
+  EXPECT_GT(alone.retrieve.word_candidates, 0);
+  EXPECT_GT(alone.verify.look_around_frames, 0);
+  EXPECT_EQ(usual.verify.look_around_frames, 0);
+  EXPECT_GT(alone.verify.min_inliers_in_sequence, usual.verify.min_inliers_in_sequence)
+      << "the more features, the more agree by chance";
+  EXPECT_GT(alone.verify.min_views, usual.verify.min_views);
+}
+
+TEST(Profiles, AnUnknownOneIsRefusedWithTheNamesOfAll) {
+  try {
+    profile("recognise");
+    FAIL();
+  } catch (const core::InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "unknown profile recognise; expected one of: default, recognition, paper");
+  }
 }
 
 }  // namespace

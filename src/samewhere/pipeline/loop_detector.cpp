@@ -105,6 +105,7 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
     rows.push_back(judged(candidate, view, map, settings_));
     wait_or_pause(rows.back());
   }
+  look_around(descriptor, view, map, rows);
   if (!may_wait) return rows;
   for (const core::Candidate& candidate : foretold(descriptor)) {
     rows.push_back(judged(candidate, views_.at(candidate.query), map, settings_));
@@ -116,9 +117,50 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
   return rows;
 }
 
+void LoopDetector::look_around(const core::Descriptor& descriptor, const features::View& view,
+                               const MapKnowledge& map, std::vector<core::LedgerRow>& rows) {
+  const verify::Config& config = settings_.verify;
+  if (config.look_around_frames == 0) return;
+  units_.emplace(descriptor.frame, descriptor.unit);
+  const core::LedgerRow* found = best_of_query(rows, config);
+  if (found == nullptr) return;
+  core::LedgerRow best = *found;
+  const auto& geometry = core::evidence_of(best.verdict).geometry;
+  if (!geometry || geometry->num_inliers < config.min_matches) return;
+  const auto shows_more = [&](int frames) {
+    const auto candidate = beside(best.candidate, frames, descriptor);
+    if (!candidate) return false;
+    rows.push_back(judged(*candidate, view, map, settings_));
+    wait_or_pause(rows.back());
+    const std::vector<core::LedgerRow> both = {best, rows.back()};
+    const bool is_better = best_of_query(both, config) == &both.back();
+    if (is_better) best = both.back();
+    return is_better;
+  };
+  for (int step = config.look_around_frames; step > 0;) {
+    if (!shows_more(-step) && !shows_more(step)) step /= 2;
+  }
+}
+
+std::optional<core::Candidate> LoopDetector::beside(const core::Candidate& candidate, int frames,
+                                                    const core::Descriptor& descriptor) const {
+  const auto there = static_cast<std::int64_t>(candidate.match.index()) + frames;
+  const auto newest = static_cast<std::int64_t>(candidate.query.index()) -
+                      static_cast<std::int64_t>(window_frames_);
+  if (there < 0 || there >= newest) return std::nullopt;
+  const core::FrameId match(static_cast<std::uint64_t>(there), candidate.match.session());
+  const auto unit = units_.find(match);
+  if (unit == units_.end() || was_judged_.contains({candidate.query, match})) return std::nullopt;
+  return core::Candidate{.query = candidate.query,
+                         .match = match,
+                         .similarity = core::ncc(descriptor.unit, unit->second),
+                         .is_foretold = true};
+}
+
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {
   const core::Candidate& candidate = row.candidate;
-  if (may_need_sequences(settings_.verify)) was_judged_.insert({candidate.query, candidate.match});
+  if (may_need_sequences(settings_.verify) || settings_.verify.look_around_frames > 0)
+    was_judged_.insert({candidate.query, candidate.match});
   if (core::is_loop(row.verdict))
     history_.last_loop_query = std::max(history_.last_loop_query, std::optional(candidate.query));
   const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);

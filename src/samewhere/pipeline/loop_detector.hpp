@@ -85,6 +85,12 @@ class LoopDetector {
 
  private:
   void wait_or_pause(const core::LedgerRow& row);
+  // Beside the best candidate's match: who shows more of the same?
+  void look_around(const core::Descriptor& descriptor, const features::View& view,
+                   const MapKnowledge& map, std::vector<core::LedgerRow>& rows);
+  // Nothing where there is no such frame, or it is too young or judged already.
+  std::optional<core::Candidate> beside(const core::Candidate& candidate, int frames,
+                                        const core::Descriptor& descriptor) const;
   // Candidates that no search found: what the view should show if a sequence goes on.
   std::vector<core::Candidate> foretold(const core::Descriptor& descriptor);
   core::LedgerRow judged(core::Candidate candidate, const features::View& view,
@@ -105,10 +111,12 @@ class LoopDetector {
   verify::MeasureSettings lost_settings_without_depth_;
   verify::History history_;
   verify::Waiting waiting_;
-  std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where sequences are asked for
+  std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where more than search is asked
   NumberedViews numbered_;
   std::uint64_t window_frames_;
   std::map<core::FrameId, features::View> views_;
+  std::map<core::FrameId, std::vector<float>>
+      units_;  // of descriptors, where who looks around asks
   std::uint64_t num_candidates_ = 0;
 };
 

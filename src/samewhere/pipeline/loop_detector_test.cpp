@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,6 +84,83 @@ TEST(LoopDetector, WithoutDepthWhoIsLostMayMatchWhatIsNotClearEnoughForALoop) {
   const auto loops = detector.look(picture, later, {no_odometry}, is_connected, timings);
   ASSERT_EQ(loops.size(), 1U);
   EXPECT_EQ(num_matches(loops[0]), 0);
+}
+
+// A camera turns about itself, a view every two degrees and a bit, and then shows once more what
+// `seen_again` has shown.
+class TurnAround {
+ public:
+  explicit TurnAround(int look_around_frames) {
+    config_.retrieve.window_frames = 40;
+    config_.verify.look_around_frames = look_around_frames;
+  }
+
+  // All that is judged of frame `query`, if the search finds `found`.
+  std::vector<core::LedgerRow> look_again(int query, int seen_again, int found) {
+    LoopDetector detector(config_);
+    for (int frame = 0; frame < kNumViews; ++frame)
+      detector.judge(described(frame), {}, turned(frame, frame), {no_odometry});
+    return detector.judge(
+        described(query),
+        {candidate(static_cast<std::uint64_t>(query), static_cast<std::uint64_t>(found), 0.9)},
+        turned(query, seen_again), {no_odometry});
+  }
+
+  const Config& config() const { return config_; }
+
+ private:
+  static constexpr int kNumViews = 30;
+
+  static std::optional<core::OdometryEvidence> no_odometry(const core::Candidate& /*candidate*/,
+                                                           const core::Sim3& /*found*/) {
+    return std::nullopt;
+  }
+
+  static core::Descriptor described(int frame) {
+    return {.frame = core::FrameId(static_cast<std::uint64_t>(frame)), .unit = {0.6F, 0.0F, 0.8F}};
+  }
+
+  features::View turned(int frame, int steps) const {
+    return features::test_view(world_, frame,
+                               core::Rigid3{core::exp_so3({0.0, 0.04 * steps, 0.0})});
+  }
+
+  Config config_;
+  features::TestWorld world_ = features::test_world(3);
+};
+
+std::vector<std::uint64_t> matches_of(const std::vector<core::LedgerRow>& rows) {
+  std::vector<std::uint64_t> matches;
+  for (const auto& row : rows) matches.push_back(row.candidate.match.index());
+  return matches;
+}
+
+TEST(LoopDetector, BesideTheBestMatchItFindsTheViewThatShowsMostOfTheSame) {
+  TurnAround looking(8);
+  const auto rows = looking.look_again(100, 12, 5);
+  EXPECT_EQ(best_of_query(rows, looking.config().verify)->candidate.match, core::FrameId(12));
+  std::vector<std::uint64_t> matches = matches_of(rows);
+  EXPECT_EQ(matches.at(0), 5U) << "what the search found";
+  EXPECT_EQ(matches.at(1), 13U) << "there is none 8 before, and 8 behind is better";
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    EXPECT_TRUE(rows[i].candidate.is_foretold) << "looked for on purpose: " << matches[i];
+  std::sort(matches.begin(), matches.end());
+  EXPECT_EQ(std::unique(matches.begin(), matches.end()), matches.end()) << "none twice";
+}
+
+TEST(LoopDetector, WhatSearchFindsIsAllWhereNobodyLooksAround) {
+  EXPECT_EQ(matches_of(TurnAround(0).look_again(100, 12, 5)), (std::vector<std::uint64_t>{5}));
+}
+
+TEST(LoopDetector, NobodyLooksAroundAmongViewsThatAreTooYoung) {
+  const auto rows = TurnAround(8).look_again(50, 12, 5);
+  EXPECT_GT(rows.size(), 1U);
+  for (const std::uint64_t match : matches_of(rows)) EXPECT_LT(match, 10U) << "window 40";
+}
+
+TEST(LoopDetector, NorWhereNothingMatches) {
+  EXPECT_EQ(matches_of(TurnAround(8).look_again(100, 70, 5)), (std::vector<std::uint64_t>{5}))
+      << "the other way round";
 }
 
 TEST(LoopDetector, ThePublishedOneAcceptsTheBestMatchOfAViewAndThenPauses) {

@@ -4,7 +4,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/open_source.hpp>
-#include <samewhere/pipeline/paper_profile.hpp>
+#include <samewhere/pipeline/profiles.hpp>
 #include <samewhere/pipeline/slam.hpp>
 
 namespace samewhere::pipeline {

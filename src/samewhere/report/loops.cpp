@@ -37,6 +37,7 @@ Json scores_of(const core::Verdict& verdict) {
     scores["num_inliers"] = evidence.geometry->num_inliers;
     add_score(scores, "inlier_ratio", evidence.geometry->inlier_ratio);
     add_score(scores, "spread_ratio", evidence.geometry->spread_ratio);
+    add_score(scores, "overlap_ratio", evidence.geometry->overlap_ratio);
     add_score(scores, "reprojection_rmse_px", evidence.geometry->reprojection_rmse_px);
     if (evidence.geometry->disagreement_m) {
       add_score(scores, "disagreement_m", *evidence.geometry->disagreement_m);
@@ -86,6 +87,7 @@ Json entry_of(const core::LedgerRow& row) {
   if (candidate.query.session() != candidate.match.session()) add_sessions(entry, candidate);
   if (row.candidate.is_foretold) entry["is_foretold"] = true;
   if (row.candidate.is_lost) entry["is_lost"] = true;
+  if (row.candidate.is_by_features) entry["is_by_features"] = true;
   const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
   if (loop != nullptr && loop->is_by_hand) entry["is_by_hand"] = true;
   if (loop != nullptr && loop->overruled.is_valid()) entry["overruled"] = loop->overruled.index();

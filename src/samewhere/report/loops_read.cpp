@@ -24,7 +24,8 @@ class Entry {
                       frame("match"),
                       scores_.at("similarity").get<double>(),
                       json.value("is_foretold", false),
-                      json.value("is_lost", false)};
+                      json.value("is_lost", false),
+                      json.value("is_by_features", false)};
   }
 
   core::LedgerRow row() && {
@@ -119,6 +120,7 @@ class Entry {
     geometry.num_inliers = scores_.at("num_inliers").get<int>();
     geometry.inlier_ratio = score("inlier_ratio").value_or(0.0);
     geometry.spread_ratio = score("spread_ratio").value_or(0.0);
+    geometry.overlap_ratio = score("overlap_ratio").value_or(0.0);
     geometry.reprojection_rmse_px = score("reprojection_rmse_px").value_or(0.0);
     geometry.match_from_query = pose();
     geometry.disagreement_m = score("disagreement_m");

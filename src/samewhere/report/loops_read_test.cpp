@@ -73,6 +73,7 @@ TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
   core::Candidate about = candidate(0, 9, 2, 0.8);
   about.is_foretold = true;
   about.is_lost = true;
+  about.is_by_features = true;
   const core::Ledger found = read(loops_json(
       {{about, core::Ambiguous{.candidate = about.id, .evidence = waiting, .reason = "so far"}}}));
   EXPECT_EQ(core::reason_of(found.at(0).verdict), "so far");
@@ -85,6 +86,8 @@ TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
   EXPECT_FALSE(sequence->is_over);
   EXPECT_TRUE(found.at(0).candidate.is_foretold);
   EXPECT_TRUE(found.at(0).candidate.is_lost);
+  EXPECT_TRUE(found.at(0).candidate.is_by_features);
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->overlap_ratio, 0.75);
 }
 
 TEST_F(LoopsRead, ARivalIsReadBack) {

@@ -60,6 +60,7 @@ TEST(LoopsJson, ALoopSaysAllThatWasMeasured) {
                                       {"num_inliers", 80},
                                       {"inlier_ratio", 0.5},
                                       {"spread_ratio", 0.25},
+                                      {"overlap_ratio", 0.75},
                                       {"reprojection_rmse_px", 1.25},
                                       {"correction_m", 0.4},
                                       {"correction_rad", 0.02},

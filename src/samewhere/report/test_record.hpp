@@ -54,6 +54,7 @@ inline core::Evidence evidence(double similarity, int num_matches, int num_inlie
   geometry.num_inliers = num_inliers;
   geometry.inlier_ratio = static_cast<double>(num_inliers) / num_matches;
   geometry.spread_ratio = 0.25;
+  geometry.overlap_ratio = 0.75;
   geometry.reprojection_rmse_px = 1.25;
   geometry.match_from_query = core::Sim3{1.0, core::exp_so3({0.0, 0.1, 0.0}), {0.1, 0.0, 0.3}};
   result.geometry = geometry;

@@ -70,27 +70,28 @@ std::vector<FoundView> Retriever::search_places(const core::Descriptor& descript
 std::vector<FoundView> Retriever::found_by(const core::Descriptor& descriptor,
                                            const cv::Mat& features, int num_allowed,
                                            const Config& config) const {
-  std::vector<ScoredPosition> found = best_places(store_, scored(descriptor, num_allowed), config);
-  if (!words_) return views_at(found);
+  const std::vector<ScoredPosition> alike =
+      best_places(store_, scored(descriptor, num_allowed), config);
+  std::vector<FoundView> found;
+  for (const ScoredPosition& one : alike) found.push_back(view_at(one.position));
+  if (!words_) return found;
   Config by_words = config;
   by_words.num_candidates = config.word_candidates;
   for (const ScoredPosition& one :
        best_places(store_, words_->search(features, num_allowed), by_words)) {
-    const bool is_known = std::any_of(found.begin(), found.end(), [&](const ScoredPosition& other) {
+    const bool is_known = std::any_of(alike.begin(), alike.end(), [&](const ScoredPosition& other) {
       return other.position == one.position;
     });
-    if (!is_known) found.push_back(one);
-  }
-  return views_at(found);
-}
-
-std::vector<FoundView> Retriever::views_at(const std::vector<ScoredPosition>& positions) const {
-  std::vector<FoundView> found;
-  for (const ScoredPosition& best : positions) {
-    const std::span<const float> vector = store_.vector(best.position);
-    found.push_back({store_.frame(best.position), {vector.begin(), vector.end()}});
+    if (is_known) continue;
+    found.push_back(view_at(one.position));
+    found.back().is_by_features = true;
   }
   return found;
+}
+
+FoundView Retriever::view_at(int position) const {
+  const std::span<const float> vector = store_.vector(position);
+  return {store_.frame(position), {vector.begin(), vector.end()}};
 }
 
 std::vector<ScoredPosition> Retriever::scored(const core::Descriptor& descriptor,
@@ -138,7 +139,10 @@ std::vector<core::Candidate> compare(const core::Descriptor& query,
                                      const std::vector<FoundView>& found) {
   std::vector<core::Candidate> candidates;
   for (const FoundView& view : found) {
-    candidates.push_back({{}, query.frame, view.frame, core::ncc(query.unit, view.unit)});
+    candidates.push_back({.query = query.frame,
+                          .match = view.frame,
+                          .similarity = core::ncc(query.unit, view.unit),
+                          .is_by_features = view.is_by_features});
   }
   std::sort(
       candidates.begin(), candidates.end(), [](const core::Candidate& a, const core::Candidate& b) {

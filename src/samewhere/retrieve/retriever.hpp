@@ -19,6 +19,7 @@ namespace samewhere::retrieve {
 struct FoundView {
   core::FrameId frame;
   std::vector<float> unit;
+  bool is_by_features = false;  // not by its looks
 };
 
 // The exact similarity of what the search found: candidates with their NCC, eq. (8)-(13), most
@@ -73,7 +74,7 @@ class Retriever {
   std::vector<ScoredPosition> scored(const core::Descriptor& descriptor, int num_allowed) const;
   std::vector<FoundView> found_by(const core::Descriptor& descriptor, const cv::Mat& features,
                                   int num_allowed, const Config& config) const;
-  std::vector<FoundView> views_at(const std::vector<ScoredPosition>& positions) const;
+  FoundView view_at(int position) const;
 
   Config config_;
   std::uint64_t seed_;

@@ -26,6 +26,7 @@ struct Config {
   int max_view_gap = 3;
   int wait_views = 20;
   double same_view_ratio = 0.15;
+  int look_around_frames = 0;
   double max_odometry_chi_square = 16.81;
   double max_rival_chi_square = 30.0;
   double min_rival_gain = 6.0;
@@ -85,6 +86,11 @@ inline void visit_sequence(Config& config, core::FieldVisitor& visit) {
       {.help = "a frame that shares so many of its features with the last view is still that view",
        .min = 0.0,
        .max = 1.0});
+  visit("look_around_frames", config.look_around_frames,
+        {.help = "frames so far beside the best match, then half as far and so on, are asked "
+                 "whether they show more of the same; 0: what search finds is all",
+         .min = 0,
+         .max = 1000});
 }
 
 inline void visit_measurement(Config& config, core::FieldVisitor& visit) {

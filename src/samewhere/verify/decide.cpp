@@ -15,6 +15,7 @@ using core::Evidence;
 using core::Refusal;
 using core::Rejection;
 
+constexpr double kTie = 1e-3;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 Rejection rejection(const Candidate& candidate, const Evidence& evidence, Refusal stage,
@@ -40,6 +41,10 @@ std::optional<Rejection> check_agreement(const Candidate& candidate, const Evide
                                apart_m, apart_rad * kDegrees));
 }
 
+int inliers_needed(const core::GeometryEvidence& geometry, const Config& config) {
+  return needs_sequence(geometry, config) ? config.min_inliers_in_sequence : config.min_inliers;
+}
+
 std::optional<Rejection> check_geometry(const Candidate& candidate, const Evidence& evidence,
                                         const Config& config) {
   const core::GeometryEvidence& g = *evidence.geometry;
@@ -49,7 +54,7 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
         fmt::format("only {} feature matches, {} needed", g.num_matches, config.min_matches));
   }
   const bool is_for_itself = !needs_sequence(g, config);
-  const int min_inliers = is_for_itself ? config.min_inliers : config.min_inliers_in_sequence;
+  const int min_inliers = inliers_needed(g, config);
   if (g.num_inliers < min_inliers) {
     return rejection(candidate, evidence, Refusal::kInliers,
                      fmt::format("only {} features agree on one geometry, {} needed", g.num_inliers,
@@ -129,6 +134,9 @@ std::optional<core::Verdict> check_other_views(const Candidate& candidate, const
   return undecided;
 }
 
+// A similarity, mapped into [0, 1).
+double below_1(double similarity) { return 0.499 * (1.0 + similarity); }
+
 // With its pose, and against whom it contradicts.
 void join(core::LoopClosure& loop, const Config& config) {
   loop.match_from_query = loop.evidence.geometry->match_from_query;
@@ -193,14 +201,17 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
 
 double rank(const Evidence& evidence, const Config& config) {
   if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
-  const int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
-  return num_inliers + 0.499 * (1.0 + evidence.similarity);
+  const core::GeometryEvidence geometry = evidence.geometry.value_or(core::GeometryEvidence{});
+  const double ties = kTie * (geometry.num_inliers + below_1(evidence.similarity));
+  if (geometry.num_inliers < inliers_needed(geometry, config)) return ties;
+  return ties + geometry.num_inliers * geometry.overlap_ratio * geometry.overlap_ratio;
 }
 
 double score(const Evidence& evidence, const Config& config) {
-  const double alone = rank(evidence, config);
-  if (config.rank_by == RankBy::kSimilarity || !evidence.sequence) return alone;
-  return std::max(alone, evidence.sequence->num_inliers + 0.499 * (1.0 + evidence.similarity));
+  if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
+  const int alone = evidence.geometry ? evidence.geometry->num_inliers : 0;
+  const int in_sequence = evidence.sequence ? evidence.sequence->num_inliers : 0;
+  return std::max(alone, in_sequence) + below_1(evidence.similarity);
 }
 
 }  // namespace samewhere::verify

@@ -28,13 +28,15 @@ std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
 bool may_need_sequences(const Config& config);
 bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config);
 
-// What makes a candidate the best of its query: the similarity, or the inliers plus the similarity
-// mapped into [0, 1), which then only breaks ties. The views around do not count: they say that a
+// What makes a candidate the best of its query: the similarity, or the inliers by the square of the
+// overlap, for a view that shows most of the same is wanted, not one that shows a well textured
+// corner of it. Of too few inliers, which may agree by chance, no overlap is known: there, and
+// among equals, inliers, then similarity decide. The views around do not count: they say that a
 // place is seen again, the view itself which part of it.
 double rank(const core::Evidence& evidence, const Config& config);
 
-// How sure the evidence is, for precision-recall curves: the same, with the inliers of the whole
-// sequence if there is one.
+// How sure the evidence is, for precision-recall curves: the similarity, or the inliers, those of
+// the whole sequence if there is one, plus the similarity mapped into [0, 1), which breaks ties.
 double score(const core::Evidence& evidence, const Config& config);
 
 }  // namespace samewhere::verify

@@ -18,6 +18,13 @@ void add_pixels(const View& query, const View& match, const Match& pair,
 
 }  // namespace
 
+geometry::PixelPairs pixels_of(const View& query, const View& match,
+                               const std::vector<Match>& matches) {
+  geometry::PixelPairs pairs;
+  for (const Match& pair : matches) add_pixels(query, match, pair, pairs);
+  return pairs;
+}
+
 core::Random random_of(const core::Candidate& candidate, const MeasureSettings& settings) {
   const std::uint64_t query_seed = core::seed_of(settings.seed, "verify", candidate.query.value());
   return core::Random(core::seed_of(query_seed, "match", candidate.match.value()));
@@ -26,8 +33,7 @@ core::Random random_of(const core::Candidate& candidate, const MeasureSettings& 
 std::optional<EpipolarInliers> epipolar_inliers(const View& query, const View& match,
                                                 const std::vector<Match>& matches,
                                                 const Config& config, core::Random& random) {
-  geometry::PixelPairs pairs;
-  for (const Match& pair : matches) add_pixels(query, match, pair, pairs);
+  const geometry::PixelPairs pairs = pixels_of(query, match, matches);
   const auto found = geometry::estimate_fundamental(
       pairs, {.max_error_px = config.max_error_px, .max_iterations = config.ransac_iterations},
       random);

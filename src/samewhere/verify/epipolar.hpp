@@ -18,6 +18,10 @@ namespace samewhere::verify {
 // gives the same evidence.
 core::Random random_of(const core::Candidate& candidate, const MeasureSettings& settings);
 
+// Their undistorted pixels, first = of the match.
+geometry::PixelPairs pixels_of(const features::View& query, const features::View& match,
+                               const std::vector<features::Match>& matches);
+
 // The matches that agree on one fundamental matrix.
 struct EpipolarInliers {
   Eigen::Matrix3d fundamental = Eigen::Matrix3d::Zero();  // query' F match = 0, undistorted pixels

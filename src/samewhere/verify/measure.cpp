@@ -15,6 +15,7 @@
 #include <samewhere/optimize/motion_only.hpp>
 #include <samewhere/verify/epipolar.hpp>
 #include <samewhere/verify/measure.hpp>
+#include <samewhere/verify/overlap.hpp>
 
 namespace samewhere::verify {
 namespace {
@@ -27,10 +28,10 @@ constexpr int kSpreadCells = 8;
 constexpr int kMinPointsForPose = 12;
 
 // Share of the query image's 8 x 8 cells that hold one of these features.
-double spread_ratio(const View& query, const std::vector<int>& query_features) {
+double spread_ratio(const View& query, const std::vector<Match>& inliers) {
   std::set<std::pair<int, int>> cells;
-  for (const int i : query_features) {
-    const Eigen::Vector2f& pixel = query.features->raw_px[static_cast<std::size_t>(i)];
+  for (const Match& inlier : inliers) {
+    const Eigen::Vector2f& pixel = query.features->raw_px[static_cast<std::size_t>(inlier.second)];
     cells.insert(
         {static_cast<int>(pixel.x() * kSpreadCells / static_cast<float>(query.image_size_px.width)),
          static_cast<int>(pixel.y() * kSpreadCells /
@@ -75,7 +76,10 @@ class PoseMeasurement {
         static_cast<double>(pose->inliers.size()) / std::max<double>(1.0, evidence.num_matches);
     evidence.num_inliers = fine.num_inliers;
     evidence.reprojection_rmse_px = fine.reprojection_rmse_px;
-    evidence.spread_ratio = spread_ratio(query_, inlier_features(again, fine));
+    const std::vector<Match> inliers = inliers_of(again, fine);
+    evidence.spread_ratio = spread_ratio(query_, inliers);
+    evidence.overlap_ratio = overlap_ratio(pixels_of(query_, match_, inliers), match_.image_size_px,
+                                           query_.image_size_px);
     const std::optional<double> scale =
         settings_.has_one_scale ? std::optional(1.0) : scale_of(again, fine);
     if (!scale) return evidence;
@@ -154,11 +158,11 @@ class PoseMeasurement {
     return core::median(std::move(ratios));
   }
 
-  static std::vector<int> inlier_features(const std::vector<Match>& matches,
-                                          const optimize::MotionResult& motion) {
-    std::vector<int> inliers;
+  static std::vector<Match> inliers_of(const std::vector<Match>& matches,
+                                       const optimize::MotionResult& motion) {
+    std::vector<Match> inliers;
     for (std::size_t i = 0; i < matches.size(); ++i) {
-      if (motion.is_inlier[i]) inliers.push_back(matches[i].second);
+      if (motion.is_inlier[i]) inliers.push_back(matches[i]);
     }
     return inliers;
   }
@@ -207,17 +211,16 @@ GeometryEvidence measure_epipolar(const View& query, const View& match,
   evidence.num_matches = static_cast<int>(matches.size());
   const auto found = epipolar_inliers(query, match, matches, config, random);
   if (!found) return evidence;
-  std::vector<int> inlier_features;
   double sum_squared = 0.0;
   for (std::size_t i = 0; i < found->matches.size(); ++i) {
-    inlier_features.push_back(found->matches[i].second);
     sum_squared += geometry::sampson_squared(found->fundamental, found->pairs.first_px[i],
                                              found->pairs.second_px[i]);
   }
-  evidence.num_inliers = static_cast<int>(inlier_features.size());
+  evidence.num_inliers = static_cast<int>(found->matches.size());
   evidence.inlier_ratio = static_cast<double>(evidence.num_inliers) / evidence.num_matches;
   evidence.reprojection_rmse_px = std::sqrt(sum_squared / evidence.num_inliers);
-  evidence.spread_ratio = spread_ratio(query, inlier_features);
+  evidence.spread_ratio = spread_ratio(query, found->matches);
+  evidence.overlap_ratio = overlap_ratio(found->pairs, match.image_size_px, query.image_size_px);
   return evidence;
 }
 

@@ -75,6 +75,7 @@ std::complex<double> as_complex(const Vector2d& v) { return {v.x(), v.y()}; }
 // second = turn * first + shift over complex numbers, least squares.
 std::optional<Matrix3d> fit_similarity(const geometry::PixelPairs& pairs,
                                        const std::vector<std::size_t>& used) {
+  if (used.empty()) return std::nullopt;
   std::complex<double> mean_first;
   std::complex<double> mean_second;
   for (const std::size_t i : used) {
@@ -109,16 +110,18 @@ std::vector<std::size_t> better_half(const geometry::PixelPairs& pairs, const Ma
   return kept;
 }
 
-std::optional<Registration> register_by_similarity(const geometry::PixelPairs& pairs) {
+}  // namespace
+
+std::optional<Registration> register_by_similarity(const geometry::PixelPairs& pairs,
+                                                   int num_rounds) {
   std::vector<std::size_t> all(pairs.first_px.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const auto coarse = fit_similarity(pairs, all);
-  if (!coarse) return std::nullopt;
-  const auto fine = fit_similarity(pairs, better_half(pairs, *coarse));
-  return Registration{.second_from_first = fine.value_or(*coarse)};
+  auto map = fit_similarity(pairs, all);
+  if (!map) return std::nullopt;
+  for (int round = 0; round < num_rounds; ++round)
+    map = fit_similarity(pairs, better_half(pairs, *map)).value_or(*map);
+  return Registration{.second_from_first = *map};
 }
-
-}  // namespace
 
 Vector2d mapped(const Matrix3d& to_from, const Vector2d& pixel) {
   const Eigen::Vector3d there = to_from * pixel.homogeneous();

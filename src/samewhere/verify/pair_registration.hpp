@@ -19,6 +19,11 @@ struct Registration {
 // Where a pixel lies under it; infinity behind the horizon.
 Eigen::Vector2d mapped(const Eigen::Matrix3d& to_from, const Eigen::Vector2d& pixel);
 
+// The similarity of least squares (after Umeyama 1991, in the plane), fitted anew to the better
+// half of the pairs for some rounds. Nothing for pairs of one point, or none.
+std::optional<Registration> register_by_similarity(const geometry::PixelPairs& pairs,
+                                                   int num_rounds = 1);
+
 // The homography that most pairs agree on (estimate_homography), within a fiftieth of the picture's
 // width: a corridor is no plane. If there is none, or if it turns over, tears or shears the part of
 // the picture around the pairs: the similarity of least squares (after Umeyama 1991, in the plane),

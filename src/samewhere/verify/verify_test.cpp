@@ -30,6 +30,8 @@ TEST(MeasureGeometry, FindsTheRelativePoseOfTheSamePlace) {
   EXPECT_LT(*evidence.disagreement_m, 0.02);
   EXPECT_LT(*evidence.disagreement_rad, 0.01);
   EXPECT_GT(evidence.spread_ratio, 0.5);
+  // turned by 0.2 rad, which is 100 of 640 pixels
+  EXPECT_NEAR(evidence.overlap_ratio, 0.8, 0.1);
   EXPECT_LT(evidence.reprojection_rmse_px, 1.0);
 }
 
@@ -40,6 +42,7 @@ TEST(MeasureGeometry, WithoutDepthItCountsEpipolarInliersAndHasNoPose) {
                        features::test_view(world, 0, {}, 0.3, false), {});
   EXPECT_FALSE(evidence.match_from_query);
   EXPECT_GT(evidence.num_inliers, 100);
+  EXPECT_NEAR(evidence.overlap_ratio, 0.8, 0.1);
 }
 
 // What a camera without depth sees, with the depths that a map of this scale has for it.
@@ -99,7 +102,7 @@ TEST(MeasureGeometry, TheSamePairGivesTheSameBitsWheneverItIsAsked) {
 
 core::Evidence good_evidence() {
   core::Evidence evidence{.similarity = 0.8};
-  evidence.geometry = core::GeometryEvidence{120, 90, 0.75, 0.5, 1.0, core::Sim3{}};
+  evidence.geometry = core::GeometryEvidence{120, 90, 0.75, 0.5, 0.8, 1.0, core::Sim3{}};
   evidence.odometry = core::OdometryEvidence{0.1, 0.01, 2.0};
   return evidence;
 }
@@ -216,6 +219,33 @@ TEST(Score, InliersComeFirstAndSimilarityBreaksTies) {
             score(few, {.rank_by = RankBy::kSimilarity}));
   more.geometry->num_inliers = 40;
   EXPECT_LT(score(more, by_inliers), score(few, by_inliers));
+}
+
+TEST(Rank, AViewThatShowsMostOfTheSameComesBeforeATexturedCornerOfIt) {
+  core::Evidence corner = good_evidence();
+  corner.geometry->num_inliers = 200;
+  corner.geometry->overlap_ratio = 0.3;
+  core::Evidence most = good_evidence();
+  most.geometry->num_inliers = 60;
+  most.geometry->overlap_ratio = 0.9;
+  EXPECT_GT(rank(most, {}), rank(corner, {}));
+  EXPECT_GT(score(corner, {}), score(most, {})) << "surer of its place all the same";
+  const Config by_looks{.rank_by = RankBy::kSimilarity};
+  EXPECT_EQ(rank(most, by_looks), most.similarity);
+}
+
+TEST(Rank, OfWhatMayAgreeByChanceNoOverlapIsKnown) {
+  const Config config;
+  core::Evidence chance = good_evidence();
+  chance.geometry->num_inliers = config.min_inliers - 20;
+  chance.geometry->overlap_ratio = 1.0;
+  core::Evidence nearly = good_evidence();
+  nearly.geometry->num_inliers = config.min_inliers - 1;
+  nearly.geometry->overlap_ratio = 0.4;
+  EXPECT_GT(rank(nearly, config), rank(chance, config));
+  chance.geometry->num_inliers = nearly.geometry->num_inliers;
+  chance.similarity = nearly.similarity + 0.1;
+  EXPECT_GT(rank(chance, config), rank(nearly, config)) << "of equals the more similar";
 }
 
 TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {

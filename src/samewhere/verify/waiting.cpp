@@ -12,6 +12,11 @@ namespace {
 
 constexpr int kMaxForetold = 4;  // or a few more
 
+// Who was looked for because he fits proves no sequence.
+bool is_claim(const core::Candidate& candidate) {
+  return !candidate.is_foretold && !candidate.is_by_features;
+}
+
 ViewPair views_of(const core::Evidence& evidence) {
   return {evidence.sequence->query_view, evidence.sequence->match_view};
 }
@@ -34,7 +39,7 @@ void Waiting::add(const core::Candidate& candidate, const core::Evidence& eviden
       waiters_.begin(), waiters_.end(), views.query,
       [](int view, const Waiter& waiter) { return view < waiter.evidence.sequence->query_view; });
   waiters_.insert(later, {candidate, evidence});
-  if (candidate.is_foretold) return;
+  if (!is_claim(candidate)) return;
   int& num_inliers = claims_[views];
   num_inliers = std::max(num_inliers, evidence.geometry->num_inliers);
 }
@@ -114,7 +119,7 @@ std::vector<core::LedgerRow> Waiting::settle_until(int last_view_given_up) {
     core::SequenceEvidence& evidence = *waiter.evidence.sequence;
     const ViewPair views = views_of(waiter.evidence);
     const Sequence sequence =
-        waiter.candidate.is_foretold ? held_by(views, longest) : longest.at(views);
+        is_claim(waiter.candidate) ? longest.at(views) : held_by(views, longest);
     evidence.num_views = sequence.num_views;
     evidence.num_inliers = sequence.num_inliers;
     evidence.is_over = evidence.query_view <= last_view_given_up;

@@ -45,7 +45,7 @@ class Waiting {
 
   Config config_;
   std::vector<Waiter> waiters_;     // undecided; their query views ascend
-  std::map<ViewPair, int> claims_;  // inliers of the best candidate of these views, not foretold
+  std::map<ViewPair, int> claims_;  // inliers of the best claim of these views
   std::set<ViewPair> foretold_;     // so far
   int first_kept_ = 0;              // query views before are forgotten
 };

@@ -20,14 +20,18 @@ Config few_views() {
 }
 
 // Views of a camera without depth: frame and view have one number.
-void add(Waiting& waiting, int query, int match, bool is_foretold = false) {
+void add(Waiting& waiting, int query, int match, bool is_foretold = false,
+         bool is_by_features = false) {
   core::Evidence evidence{.similarity = 0.8};
   evidence.geometry =
       core::GeometryEvidence{.num_matches = 100, .num_inliers = 30, .spread_ratio = 0.05};
   evidence.sequence = core::SequenceEvidence{.query_view = query, .match_view = match};
-  waiting.add({core::CandidateId(static_cast<std::uint64_t>(1000 * query + match)),
-               core::FrameId(static_cast<std::uint64_t>(query)),
-               core::FrameId(static_cast<std::uint64_t>(match)), 0.8, is_foretold},
+  waiting.add({.id = core::CandidateId(static_cast<std::uint64_t>(1000 * query + match)),
+               .query = core::FrameId(static_cast<std::uint64_t>(query)),
+               .match = core::FrameId(static_cast<std::uint64_t>(match)),
+               .similarity = 0.8,
+               .is_foretold = is_foretold,
+               .is_by_features = is_by_features},
               evidence);
 }
 
@@ -83,6 +87,16 @@ TEST(Waiting, WhoWasForetoldHangsOnASequenceButProvesNothingOfIt) {
   add(waiting, 57, 35, true);
   waiting.settle(57);
   EXPECT_EQ(told(waiting.settle_all()), Told{"57-35 NOT"}) << "hangs on nothing";
+}
+
+TEST(Waiting, NorDoesWhoWasFoundByHisFeatures) {
+  Waiting waiting(few_views());
+  for (int i = 0; i < 3; ++i) add(waiting, 50 + i, 10 + i);
+  add(waiting, 53, 13, false, true);
+  EXPECT_TRUE(waiting.settle(53).empty()) << "three that look alike";
+  add(waiting, 54, 14);
+  EXPECT_EQ(told(waiting.settle(54)),
+            (Told{"50-10 LOOP", "51-11 LOOP", "52-12 LOOP", "53-13 LOOP", "54-14 LOOP"}));
 }
 
 TEST(Waiting, AskedForLaterAnEarlierViewTakesItsPlace) {
