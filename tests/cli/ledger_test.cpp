@@ -1,5 +1,8 @@
 // `samewhere ledger` on what a run wrote, and on what none did.
 
+#include <algorithm>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -83,6 +86,36 @@ TEST_F(LedgerCommand, AnotherWordOnALoopNeedsAMap) {
   EXPECT_THAT(run("reject 2").err, HasSubstr("no candidate 2; expected 0 to 1"));
   EXPECT_THAT(run("reject 0 --set features.num_levels=4").err,
               HasSubstr("optimize, map or verify"));
+}
+
+TEST(LedgerOfARun, TakesALoopBackAndClosesItAgain) {
+  input::TestFolder folder;
+  const std::string out = quoted(folder.root() / "run");
+  // with a window so short, and no two views held to be connected, neighbours close loops
+  const Outcome walked = run_program(
+      "run 'twin:office-loop?seed=2' --set twin.num_frames=11 --set retrieve.window_frames=4 "
+      "--set map.min_shared=1000 --set map.min_tracked_ratio=0.95 --out " +
+          out,
+      folder.root());
+  ASSERT_EQ(walked.exit_code, 0) << walked.err;
+  const auto ledger = [&](const std::string& words) {
+    return run_program("ledger " + out + " " + words, folder.root());
+  };
+  const auto num_loops = [&] {
+    const std::string lines = ledger("list --verdict LOOP").out;
+    return std::count(lines.begin(), lines.end(), '\n') - 1;
+  };
+  const auto num_before = num_loops();
+  ASSERT_GE(num_before, 2);
+  const Outcome rejected = ledger("reject 0");
+  EXPECT_EQ(rejected.exit_code, 0) << rejected.err;
+  EXPECT_THAT(rejected.out, HasSubstr(fmt::format("{} (before: {})", num_before - 1, num_before)));
+  EXPECT_THAT(ledger("show 0").out, HasSubstr("taken back by hand"));
+  EXPECT_EQ(num_loops(), num_before - 1);
+  const Outcome forced = ledger("force 0");
+  EXPECT_EQ(forced.exit_code, 0) << forced.err;
+  EXPECT_THAT(ledger("show 0").out, HasSubstr("accepted by hand"));
+  EXPECT_EQ(num_loops(), num_before);
 }
 
 TEST_F(LedgerCommand, AFolderThatNoRunWroteIsRefusedInOneLine) {

@@ -211,6 +211,24 @@ TEST(SlamThreads, LagAndDelayChangeTheResultButNotWithTheThreads) {
   expect_same(found_by(frames, in_threads, asleep(1)), expected, "asleep");
 }
 
+// A loop begins it, and as no other comes for a while, nothing makes it void before it counts.
+TEST(SlamThreads, ABundleOfTheWholeMapOnTheWayChangesNothingOfThat) {
+  const std::vector<core::Frame> frames = walk();
+  Config in_turn = config_of(false);
+  in_turn.verify.pause_frames = 12;
+  in_turn.map.full_bundle_after_keyframes = 1;
+  in_turn.map.full_bundle_pace = 10'000'000;
+  Config at_the_end = in_turn;
+  at_the_end.map.full_bundle_after_keyframes = 10'000;
+  Config in_threads = in_turn;
+  in_threads.threads = true;
+  const Found expected = found_by(frames, in_turn);
+  EXPECT_NE(expected.trajectory, found_by(frames, at_the_end).trajectory) << "none on the way";
+  expect_same(found_by(frames, in_threads), expected, "in threads");
+  for (std::uint64_t seed = 0; seed < 2; ++seed)
+    expect_same(found_by(frames, in_threads, asleep(seed)), expected, "asleep");
+}
+
 TEST(SlamThreads, WithoutDepthTheyFindToTheByteWhatOneThreadFinds) {
   const std::vector<core::Frame> frames = walk_without_depth();
   const Found in_turn = found_by(frames, config_of(false), {}, DepthFrom::kMotion);
