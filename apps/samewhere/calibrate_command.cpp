@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -27,6 +28,8 @@ struct CalibrateCommand {
 
 // "9x6".
 geometry::Board parse_board(const std::string& text, double square_m) {
+  if (!std::isfinite(square_m))
+    throw core::InputError(fmt::format("--square {}: expected a finite number", square_m));
   geometry::Board board{.square_m = square_m};
   const char* const end = text.data() + text.size();
   const auto [cross, error] = std::from_chars(text.data(), end, board.num_columns);

@@ -35,8 +35,7 @@ void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
   sub->add_option("--session", command->session,
                   "of --tum and --kitti: which session's frames, 0 = the run that made the map; "
                   "needed where there are several")
-      ->check(CLI::NonNegativeNumber);
-  sub->require_option(1, 0);
+      ->check(CLI::Range(0, 1'000'000));
   sub->callback([command] {
     pipeline::export_map(
         scene::MapFile::open(command->file).load(),

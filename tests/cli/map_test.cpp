@@ -101,6 +101,19 @@ TEST_F(MapOfARun, IsExportedAsTheRunWroteItself) {
   EXPECT_EQ(std::count(kitti.begin(), kitti.end(), '\n'), 12);
   EXPECT_THAT(core::read_file(path("g.g2o")), HasSubstr("EDGE_SE3:QUAT 0 1 "));
 
+  const Outcome nothing = run(map + " export --session 0");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("nothing to write; expected --ply"));
+  const Outcome twice =
+      run(map + " export --ply " + quoted(path("one")) + " --tum " + quoted(path("a/../one")));
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("named twice"));
+  EXPECT_FALSE(std::filesystem::exists(path("one")));
+  const Outcome half =
+      run(map + " export --tum " + quoted(path("half.tum")) + " --g2o /proc/none/g.g2o");
+  EXPECT_EQ(half.exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("half.tum"))) << "all or none";
+
   const Outcome missing = run("map " + quoted(path("nowhere.sw")) + " info");
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.err, HasSubstr("nowhere.sw: no such file; expected a samewhere map"));

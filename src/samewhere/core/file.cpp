@@ -121,7 +121,12 @@ void make_writable_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
   const std::filesystem::path probe = folder / ".writable";
-  write_file(probe, "");
+  try {
+    write_file(probe, "");
+  } catch (const InputError& why) {
+    // of the probe nobody has heard
+    throw InputError(folder.string() + std::string(why.what()).substr(probe.string().size()));
+  }
   std::filesystem::remove(probe, error);
 }
 

@@ -6,6 +6,7 @@
 #include <samewhere/map/cull.hpp>
 #include <samewhere/map/fuse.hpp>
 #include <samewhere/map/local_bundle.hpp>
+#include <samewhere/map/seen.hpp>
 #include <samewhere/map/test_map.hpp>
 #include <samewhere/map/triangulate.hpp>
 
@@ -114,6 +115,105 @@ TEST(Fuse, WhatTrackingOverlookedBecomesOneLandmarkAgain) {
       }
     }
   }
+}
+
+constexpr auto kAll = [](core::LandmarkId) { return true; };
+
+// Two keyframes, and a third by which tracking knew nothing of what they show.
+scene::MapVersion forgotten(const features::TestWorld& world, const core::Rigid3& error) {
+  const scene::MapVersion map = test_map(world, 2);
+  const features::View view = features::test_view(world, 2, test_walk(2));
+  return apply(map, add_keyframe(map, test_tracked(map, view, test_walk(2) * error, kAll)));
+}
+
+TEST(Fuse, WhatALoopJoinsBearsItsCauseAndGoesIntoWhatWasSeenMoreOften) {
+  const features::TestWorld world = features::test_world(3);
+  const scene::MapVersion map = forgotten(world, core::Rigid3{});
+  const scene::LoopEdge loop{
+      .query = newest(map).id, .match = core::KeyframeId(1), .cause = core::CandidateId(7)};
+  std::size_t num_merges = 0;
+  for (const scene::Edit& edit : fuse_across(map, loop, {}, {})) {
+    num_merges += edit.merges.size();
+    for (const scene::Merge& merge : edit.merges) {
+      EXPECT_EQ(merge.cause, loop.cause);
+      EXPECT_EQ(map.at(merge.from).descriptor, map.at(merge.to).descriptor) << "one point";
+      EXPECT_EQ(map.at(merge.from).anchor, loop.query) << "the younger, or seen less often";
+    }
+    for (const scene::Sighting& sighting : edit.sightings)
+      EXPECT_EQ(sighting.observation.cause, loop.cause);
+  }
+  EXPECT_GT(num_merges, 300U);
+}
+
+TEST(Fuse, WhatDoesNotFitIsLeftApart) {
+  const features::TestWorld world = features::test_world(3);
+  // four pixels: inside the radius in which it is looked for
+  const scene::MapVersion map = forgotten(world, core::Rigid3{core::exp_so3({0.0, 0.008, 0.0})});
+  Config config;
+  config.fuse_radius_px = 8.0;
+  std::vector<core::LandmarkId> old;
+  for (std::uint64_t i = 0; i < 300; ++i) old.emplace_back(i);
+  const scene::Edit edit = fuse_into(map, newest(map).id, old, config, {});
+  EXPECT_LT(edit.merges.size() + edit.sightings.size(), 10U);
+}
+
+TEST(Fuse, WhatOnePictureShowsTwiceIsTwoThings) {
+  const features::TestWorld world = features::test_world(3);
+  const scene::MapVersion map = test_map(world, 1);
+  TrackedView tracked =
+      test_tracked(map, features::test_view(world, 1, test_walk(1)), test_walk(1), kNone);
+  // the feature of one landmark shows another, and both are in the first picture
+  const core::LandmarkId one = tracked.landmarks.at(0).second;
+  tracked.landmarks[0].second = tracked.landmarks.at(1).second;
+  tracked.landmarks.erase(tracked.landmarks.begin() + 1);
+  const scene::MapVersion both = apply(map, add_keyframe(map, tracked));
+  const scene::Edit edit = fuse_into(both, newest(both).id, {one}, {}, {});
+  EXPECT_TRUE(edit.merges.empty());
+  EXPECT_TRUE(edit.sightings.empty()) << "the feature is taken";
+}
+
+// One that the first keyframe shows in the middle of its picture.
+const scene::Landmark& straight_ahead(const scene::MapVersion& map) {
+  std::size_t best = 0;
+  const auto aside = [&](std::size_t i) {
+    return map.landmarks[i].position_in_anchor.head<2>().norm() /
+           map.landmarks[i].position_in_anchor.z();
+  };
+  for (std::size_t i = 1; i < map.landmarks.size(); ++i) best = aside(i) < aside(best) ? i : best;
+  return map.landmarks[best];
+}
+
+TEST(ExpectedAt, IsWhereTheKeyframeShowsIt) {
+  const scene::MapVersion map = test_map(features::test_world(3), 1);
+  const scene::Landmark& landmark = straight_ahead(map);
+  const auto seen = expected_at(map, map.keyframes[0], landmark, {});
+  ASSERT_TRUE(seen);
+  const auto slot = static_cast<std::size_t>(landmark.observations.at(0).slot);
+  const Eigen::Vector2d shown = map.keyframes[0].view.features->undistorted_px[slot].cast<double>();
+  EXPECT_LT((seen->pixel - shown).norm(), 0.01);
+}
+
+TEST(ExpectedAt, IsNothingBehindFromTheOtherSideOrFromTooFar) {
+  const scene::MapVersion map = test_map(features::test_world(3), 1);
+  const scene::Landmark& landmark = straight_ahead(map);
+  const double range_m = landmark.position_in_anchor.z();
+  // by a keyframe there, turned so much about the vertical
+  const auto is_expected = [&](double forward_m, double turn_rad) {
+    scene::Edit edit;
+    edit.keyframes.push_back(map.keyframes[0]);
+    edit.keyframes[0].id = core::KeyframeId(1);
+    edit.keyframes[0].world_from_body = {core::exp_so3({0.0, turn_rad, 0.0}),
+                                         {0.0, 0.0, forward_m}};
+    std::fill(edit.keyframes[0].slots.begin(), edit.keyframes[0].slots.end(), core::LandmarkId());
+    const scene::MapVersion both = apply(map, edit);
+    return expected_at(both, newest(both), landmark, {}).has_value();
+  };
+  const double about_rad = 3.14159265;
+  EXPECT_TRUE(is_expected(-0.2 * range_m, 0.0));
+  EXPECT_FALSE(is_expected(0.0, about_rad)) << "behind";
+  EXPECT_FALSE(is_expected(2.0 * range_m, about_rad)) << "from the other side";
+  EXPECT_FALSE(is_expected(-9.0 * range_m, 0.0)) << "too far";
+  EXPECT_FALSE(is_expected(0.9 * range_m, 0.0)) << "too near for its level";
 }
 
 TEST(LocalBundle, MovesDisturbedKeyframesBackAndLeavesOdometryAlone) {

@@ -78,9 +78,24 @@ std::string g2o_of(const scene::MapVersion& map) {
   return optimize::g2o_text(correct::pose_graph_of(map, {}), names);
 }
 
+// Before the first is written, so that none is left alone.
+void check_files(const MapExports& wanted) {
+  std::set<std::filesystem::path> files;
+  for (const auto& file : {wanted.ply, wanted.tum, wanted.kitti, wanted.g2o}) {
+    if (file.empty()) continue;
+    const auto [known, is_new] = files.insert(std::filesystem::absolute(file).lexically_normal());
+    if (!is_new)
+      throw core::InputError(file.string() + ": named twice; expected a file for each format");
+    core::make_writable_folder(known->parent_path());
+  }
+  if (files.empty())
+    throw core::InputError("nothing to write; expected --ply, --tum, --kitti or --g2o");
+}
+
 }  // namespace
 
 void export_map(const scene::StoredMap& stored, const MapExports& wanted) {
+  check_files(wanted);
   if (!wanted.ply.empty()) core::write_file(wanted.ply, report::ply_bytes(points_of(stored.map)));
   if (!wanted.tum.empty() || !wanted.kitti.empty()) {
     const core::Trajectory trajectory = trajectory_of(stored.map, frames_of(stored, wanted));

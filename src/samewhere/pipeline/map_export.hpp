@@ -24,7 +24,8 @@ struct MapExports {
   int session = -1;             // of these frames; -1: the only one
 };
 
-// Each whole or not at all. Throws InputError if one cannot be written, or if frames are wanted and
+// Each whole or not at all. Throws InputError if none is wanted, two are one file, one cannot be
+// written, or if frames are wanted and
 // there is no such session, or several and none was named.
 void export_map(const scene::StoredMap& stored, const MapExports& wanted);
 

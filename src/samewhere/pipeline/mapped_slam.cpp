@@ -74,7 +74,10 @@ void MappedSlam::keep(const scene::MapVersion& map, const MapNews& news) {
 // The first frame says which camera it is.
 void MappedSlam::take_known(const core::Rig& rig) {
   known_->require_same_settings(map_header(config_, rig, slam_->describer_checksum()));
-  if (!plan_.is_known_fixed) saver_.emplace(std::move(*known_));
+  if (!plan_.is_known_fixed) {
+    known_->begin_writing();
+    saver_.emplace(std::move(*known_));
+  }
   known_.reset();
 }
 

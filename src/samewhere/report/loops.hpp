@@ -18,10 +18,10 @@ std::string name_of_match(const core::Candidate& candidate);
 // loops.json, version 1: for each candidate its last verdict with stage, reason, every score of its
 // Evidence by name, and match_from_query as [tx, ty, tz, qx, qy, qz, qw] or null. Scores that are
 // not finite are left out. "is_foretold": true where no search found the candidate,
-// "is_by_features": true where it was found by its features and not by its looks, "is_lost": true where nobody knew where the view was taken; "is_by_hand": true where a person
-// accepted it; "overruled": the first of the loops that went for its sake; "query_session" and
-// "match_session" where the match is a frame of an earlier session, one of the map that the run
-// started in.
+// "is_by_features": true where it was found by its features and not by its looks, "is_lost": true
+// where nobody knew where the view was taken; "is_by_hand": true where a person accepted it;
+// "overruled": the first of the loops that went for its sake; "query_session" and "match_session"
+// where the match is a frame of an earlier session, one of the map that the run started in.
 std::string loops_json(const core::Ledger& ledger);
 
 // One row as an entry of loops.json, on one line; with "query_session" and "match_session" if the

@@ -88,6 +88,7 @@ class MapFile::Content {
   const MapHeader& header() const { return header_; }
   const std::filesystem::path& path() const { return file_.path(); }
 
+  void begin_writing() { file_.begin_writing(); }
   StoredMap load();
   std::optional<std::string> thumbnail(core::FrameId frame) {
     return file_.find(kThumbnail, row_number(frame));
@@ -125,6 +126,7 @@ class MapFile::Content {
 };
 
 void MapFile::Content::write_header(const MapHeader& header) {
+  file_.begin_writing();
   Transaction transaction = file_.transaction();
   std::int64_t number = 0;
   for (const auto& [name, value] : header) file_.put(kHeader, number++, name + "=" + value);
@@ -332,6 +334,7 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
                     after.landmarks.size() >= map_.landmarks.size(),
                 "a map file is given a later version of its map");
   State state = state_;
+  file_.begin_writing();
   Transaction transaction = file_.transaction();
   require_unchanged();
   write_keyframes(after, state);
@@ -378,6 +381,8 @@ void MapFile::require_same_settings(const MapHeader& expected) const {
                                        content_->path().string(), name, found, value));
   }
 }
+
+void MapFile::begin_writing() { content_->begin_writing(); }
 
 StoredMap MapFile::load() { return content_->load(); }
 

@@ -61,6 +61,10 @@ class MapFile {
   // Throws InputError naming the first setting, by name, that differs, and both values.
   void require_same_settings(const MapHeader& expected) const;
 
+  // Says at once, rather than at the first commit, if a file that was opened to be extended cannot
+  // be written. Before this the file keeps its bytes.
+  void begin_writing();
+
   // Everything but the thumbnails, exactly as it was committed. Throws InputError naming what is
   // damaged or missing.
   StoredMap load();

@@ -54,6 +54,25 @@ TEST_F(MapFiles, OtherSettingsAreNamedWithBothValues) {
               HasSubstr("made with describer = unknown; this run has hog"));
 }
 
+TEST_F(MapFiles, WhoIsRefusedLeavesTheBytesAsTheyAre) {
+  write_small_map();
+  const std::string before = core::read_file(path());
+  {
+    MapFile file = MapFile::open(path(), MapAccess::kExtend);
+    file.load();
+    EXPECT_NE(complaint([&] { file.require_same_settings({{"describer", "hog"}}); }), "none");
+  }
+  EXPECT_TRUE(core::read_file(path()) == before);
+}
+
+TEST_F(MapFiles, AFileThatCannotHaveALogIsSaidBeforeTheFirstCommit) {
+  write_small_map();
+  MapFile file = MapFile::open(path(), MapAccess::kExtend);
+  file.load();
+  std::filesystem::create_directory(path("m.sw-wal"));
+  EXPECT_THAT(complaint([&] { file.begin_writing(); }), HasSubstr("m.sw: cannot be opened"));
+}
+
 TEST_F(MapFiles, OneProgramWritesAtATime) {
   write_small_map();
   {

@@ -88,8 +88,13 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
     refuse(path, fmt::format("is a {} of version {}; expected version {}", kind.name, version,
                              kind.version));
   }
-  if (file.lock_) file.database_->execute("PRAGMA journal_mode=WAL");
   return file;
+}
+
+void RowFile::begin_writing() {
+  if (has_log_) return;
+  database_->execute("PRAGMA journal_mode=WAL");
+  has_log_ = true;
 }
 
 RowFile::~RowFile() {

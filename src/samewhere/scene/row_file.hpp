@@ -32,6 +32,9 @@ class RowFile {
   RowFile& operator=(RowFile&&) = delete;
   ~RowFile();
 
+  // To be called before the first row is put: the log comes beside the file. Until then a file that
+  // was opened keeps its bytes.
+  void begin_writing();
   Transaction transaction() { return Transaction(*database_); }
   // Adds the row or replaces it.
   void put(const char* table, std::int64_t number, std::string_view bytes);
@@ -55,6 +58,7 @@ class RowFile {
 
   std::unique_ptr<WriterLock> lock_;  // of who may write; released after the connection
   std::unique_ptr<Database> database_;
+  bool has_log_ = false;
   std::map<std::string, Statement> statements_;  // by their text; gone before the database
 };
 
