@@ -9,6 +9,15 @@ namespace {
 constexpr int kNear = 50;  // nodes between their ends: what lies between is known well
 constexpr std::size_t kMaxGroups = 20;
 
+// With odometry between both their beginnings, and between both their ends.
+bool are_on_one_stretch(const std::vector<int>& stretches, const PoseEdge& one,
+                        const PoseEdge& other) {
+  const auto is_one = [&](int node, int to) {
+    return stretches[static_cast<std::size_t>(node)] == stretches[static_cast<std::size_t>(to)];
+  };
+  return is_one(one.a, other.a) && is_one(one.b, other.b);
+}
+
 bool agree(const PoseGraph& graph, const PoseEdge& one, const PoseEdge& other, double limit) {
   const int apart_at_a = std::abs(one.a - other.a);
   const int apart_at_b = std::abs(one.b - other.b);
@@ -27,11 +36,13 @@ bool agree(const PoseGraph& graph, const PoseEdge& one, const PoseEdge& other, d
 std::vector<std::vector<std::size_t>> loops_that_agree(const PoseGraph& graph,
                                                        const std::vector<std::size_t>& edges,
                                                        double limit) {
+  const std::vector<int> stretches = stretches_of(graph);
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t edge : edges) {
     const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
       return std::any_of(group.begin(), group.end(), [&](std::size_t member) {
-        return agree(graph, graph.edges[member], graph.edges[edge], limit);
+        return are_on_one_stretch(stretches, graph.edges[member], graph.edges[edge]) &&
+               agree(graph, graph.edges[member], graph.edges[edge], limit);
       });
     });
     if (known == groups.end()) {

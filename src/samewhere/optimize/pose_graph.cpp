@@ -67,7 +67,10 @@ EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_fro
   return jacobians;
 }
 
-std::vector<int> parts_of(const PoseGraph& graph) {
+namespace {
+
+template <class Joins>
+std::vector<int> joined_by(const PoseGraph& graph, const Joins& joins) {
   std::vector<int> parent(graph.world_from_node.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root_of = [&](int node) {
@@ -79,11 +82,22 @@ std::vector<int> parts_of(const PoseGraph& graph) {
     return node;
   };
   for (const PoseEdge& edge : graph.edges) {
+    if (!joins(edge)) continue;
     const auto [low, high] = std::minmax({root_of(edge.a), root_of(edge.b)});
     parent[static_cast<std::size_t>(high)] = low;
   }
   for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root_of(static_cast<int>(i));
   return parent;
+}
+
+}  // namespace
+
+std::vector<int> parts_of(const PoseGraph& graph) {
+  return joined_by(graph, [](const PoseEdge& /*edge*/) { return true; });
+}
+
+std::vector<int> stretches_of(const PoseGraph& graph) {
+  return joined_by(graph, [](const PoseEdge& edge) { return !edge.is_loop; });
 }
 
 std::vector<int> held_nodes(const PoseGraph& graph) {

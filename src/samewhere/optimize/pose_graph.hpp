@@ -87,6 +87,9 @@ EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_fro
 // For each node, the lowest of those that it is joined to by edges, itself if there is none.
 std::vector<int> parts_of(const PoseGraph& graph);
 
+// The same over edges that are no loops: two walks that only loops join are two stretches.
+std::vector<int> stretches_of(const PoseGraph& graph);
+
 // What holds the graph in place: the fixed nodes, and the lowest node of every part that has none.
 std::vector<int> held_nodes(const PoseGraph& graph);
 
