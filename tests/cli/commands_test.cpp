@@ -1,6 +1,7 @@
 // Each command does what its help says.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "program.hpp"
@@ -8,6 +9,9 @@
 
 namespace samewhere::test {
 namespace {
+
+using testing::HasSubstr;
+using testing::Not;
 
 class Commands : public testing::Test {
  protected:
@@ -165,6 +169,19 @@ TEST_F(Commands, LoopsWritesTheFilesThatOthersRead) {
   EXPECT_NE(outcome.out.find("AUC"), std::string::npos);
   EXPECT_NE(outcome.out.find(describer_of_doctor() + ", hog"), std::string::npos) << outcome.out;
   EXPECT_EQ(run("eval " + quoted(path("loops"))).exit_code, 0);
+}
+
+TEST_F(Commands, LoopsSaysHowManyFramesMatchThatNoViewsInARowConfirm) {
+  const std::string walk =
+      "loops 'twin:office-loop?seed=2&camera=mono' --set twin.num_frames=8 --set "
+      "retrieve.window_frames=2 --out ";
+  const Outcome waiting = run(walk + quoted(path("waiting")));
+  ASSERT_EQ(waiting.exit_code, 0) << waiting.err;
+  EXPECT_THAT(waiting.out, HasSubstr("5 frames match an earlier one, but no 12 views in a row"));
+  const Outcome alone = run(walk + quoted(path("alone")) + " --set verify.min_views=1");
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_THAT(alone.out, Not(HasSubstr("views in a row")));
+  EXPECT_GT(core::read_file(path("alone") / "accepted.txt").size(), 0U);
 }
 
 TEST_F(Commands, WithoutOutNothingIsOverwritten) {

@@ -20,6 +20,10 @@ std::set<core::KeyframeId> neighbours_of(const scene::MapVersion& map, core::Key
   return neighbours;
 }
 
+verify::ScaleErrors scale_errors(const Config& config) {
+  return {.creep = config.optimize.odometry_scale_sigma, .loop = config.optimize.loop_scale_sigma};
+}
+
 // The keyframes that frames are, as a version of the map has them.
 class Places {
  public:
@@ -28,15 +32,15 @@ class Places {
 
   MapKnowledge knowledge(const Config& config) const {
     MapKnowledge knowledge;
-    const double scale_sigma = config.optimize.odometry_scale_sigma;
+    const verify::ScaleErrors scale = scale_errors(config);
     knowledge.measure_odometry = [=, this, &config](const core::Candidate& candidate,
                                                     const core::Sim3& match_from_query) {
       return std::optional(verify::measure_odometry(map_, claim_of(candidate, match_from_query),
-                                                    scale_sigma, config.verify));
+                                                    scale, config.verify));
     };
     knowledge.measure_rival = [=, this, &config](const core::Candidate& candidate,
                                                  const core::Sim3& match_from_query) {
-      return verify::measure_rival(map_, claim_of(candidate, match_from_query), scale_sigma,
+      return verify::measure_rival(map_, claim_of(candidate, match_from_query), scale,
                                    config.verify);
     };
     if (is_without_depth_)
@@ -59,6 +63,7 @@ class Places {
     claim.query = at(candidate.query);
     claim.match = at(candidate.match);
     claim.match_from_query = rigid_part(match_from_query);
+    claim.log_scale = std::log(match_from_query.scale);
     return claim;
   }
 
@@ -85,8 +90,7 @@ Config judging_each_view(Config config) {
 core::Verdict verdict_on(const scene::MapVersion& map, const scene::LoopEdge& loop,
                          const core::LedgerRow& accepted, const Config& config) {
   core::Evidence evidence = core::evidence_of(accepted.verdict);
-  evidence.rival =
-      verify::measure_rival(map, loop, config.optimize.odometry_scale_sigma, config.verify);
+  evidence.rival = verify::measure_rival(map, loop, scale_errors(config), config.verify);
   return verify::decide(accepted.candidate, evidence, {}, config.verify);
 }
 

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -162,6 +165,36 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   record.truth = aligned_truth(evaluation, truth);
 }
 
+// Frames that geometry takes for a place seen before and no views in a row confirm.
+std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger) {
+  std::set<core::FrameId> unconfirmed;
+  std::set<core::FrameId> confirmed;
+  for (const core::LedgerRow* row : report::final_rows(ledger)) {
+    const auto* refused = std::get_if<core::Rejection>(&row->verdict);
+    if (core::is_loop(row->verdict)) confirmed.insert(row->candidate.query);
+    if (refused != nullptr && refused->stage == core::Refusal::kSequence)
+      unconfirmed.insert(row->candidate.query);
+  }
+  std::erase_if(unconfirmed, [&](core::FrameId query) { return confirmed.contains(query); });
+  return unconfirmed;
+}
+
+// What whoever wonders why so little was recognised should know.
+std::optional<std::string> note_on(const core::Ledger& ledger, const Config& config) {
+  if (ledger.empty()) {
+    return fmt::format(
+        "no frame is more than {} frames older than another that looks like it "
+        "(retrieve.window_frames)",
+        config.retrieve.window_frames);
+  }
+  const std::size_t num_unconfirmed = unconfirmed_queries(ledger).size();
+  if (num_unconfirmed == 0) return std::nullopt;
+  return fmt::format(
+      "{} frames match an earlier one, but no {} views in a row go on to; where no "
+      "two places look alike, --set verify.min_views=1 believes each view",
+      num_unconfirmed, config.verify.min_views);
+}
+
 }  // namespace
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& given,
@@ -215,13 +248,8 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
                                      config.retrieve.window_frames};
   const auto measured = figures_of(evaluate_recognition(findings, truth));
   record.figures.insert(record.figures.begin(), measured.begin(), measured.end());
-  if (record.ledger.empty()) {
-    record.figures.push_back(
-        {"note",
-         fmt::format("no frame is more than {} frames older than another that looks like it "
-                     "(retrieve.window_frames)",
-                     config.retrieve.window_frames)});
-  }
+  if (auto note = note_on(record.ledger, config))
+    record.figures.push_back({"note", *std::move(note)});
   return outcome;
 }
 

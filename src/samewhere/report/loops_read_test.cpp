@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -34,7 +35,9 @@ class LoopsRead : public testing::Test {
     return "none";
   }
 
-  std::filesystem::path path_ = testing::TempDir() + "loops_read_test.json";
+  // of each process its own: tests may run at once
+  std::filesystem::path path_ =
+      testing::TempDir() + "loops_read_test_" + std::to_string(getpid()) + ".json";
 };
 
 TEST_F(LoopsRead, WhatWasWrittenIsWrittenAgain) {
@@ -130,7 +133,7 @@ TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithWhatSpokeForIt) {
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})
-    EXPECT_THAT(complaint(text.substr(0, length)), HasSubstr("loops_read_test.json: "));
+    EXPECT_THAT(complaint(text.substr(0, length)), HasSubstr(path_.string() + ": "));
   EXPECT_THAT(complaint(R"({"version": 2, "candidates": []})"), HasSubstr("version 2; expected 1"));
   EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": 1}]})"),
               HasSubstr("candidate 0: "));

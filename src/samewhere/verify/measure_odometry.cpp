@@ -6,7 +6,7 @@
 namespace samewhere::verify {
 
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                                        double scale_sigma, const Config& config) {
+                                        const ScaleErrors& scale, const Config& config) {
   const core::Rigid3 known =
       inverse(world_from_body(map, claim.match)) * world_from_body(map, claim.query);
   const core::Vector6d correction = difference(known, claim.match_from_query);
@@ -14,8 +14,12 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
   if (const auto chain = odometry_between(map, claim.match, claim.query)) {
-    const core::Matrix6d covariance = covariance_with_loop(map, *chain, scale_sigma, config);
-    evidence.mahalanobis_squared = correction.dot(covariance.llt().solve(correction));
+    const geometry::UncertainPose expected =
+        is_without_depth(map) ? with_crept_scale(map, *chain, claim.log_scale, scale)
+                              : geometry::UncertainPose{known, chain->begin_from_end.covariance};
+    const core::Vector6d error = difference(expected.a_from_b, claim.match_from_query);
+    const core::Matrix6d covariance = expected.covariance + loop_information(config).inverse();
+    evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
   }
   return evidence;
 }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -42,7 +43,7 @@ scene::LoopEdge claim(int query, int match, const core::Rigid3& match_from_query
 
 TEST(MeasureOdometry, ALoopThatAgreesWithOdometryMovesNothing) {
   const auto evidence = measure_odometry(
-      corridor(10), claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}), 0.01, {});
+      corridor(10), claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}), {}, {});
   EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
   EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
 }
@@ -52,7 +53,7 @@ TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALon
   const auto after = [&](int steps) {
     core::Rigid3 match_from_query = beside;
     match_from_query.translation.z() = steps - 1.0;  // one metre short of what odometry says
-    return measure_odometry(corridor(steps + 1), claim(steps, 0, match_from_query), 0.01, {});
+    return measure_odometry(corridor(steps + 1), claim(steps, 0, match_from_query), {}, {});
   };
   EXPECT_NEAR(after(5).correction_m, 1.0, 1e-9);
   EXPECT_GT(after(5).mahalanobis_squared, Config{}.max_odometry_chi_square);
@@ -64,12 +65,54 @@ TEST(MeasureOdometry, WithoutDepthTheWayMayBeLongerOrShorterThanItSeemedButNoMor
       features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
   const auto squared = [&](const features::View& view, const Eigen::Vector3d& error) {
     const core::Rigid3 seen{Eigen::Quaterniond::Identity(), error + Eigen::Vector3d(0, 0, 20)};
-    return measure_odometry(corridor(21, view), claim(20, 0, seen), 0.02, {}).mahalanobis_squared;
+    return measure_odometry(corridor(21, view), claim(20, 0, seen), {.creep = 0.02}, {})
+        .mahalanobis_squared;
   };
   const Eigen::Vector3d along(0.0, 0.0, 2.0);
   const Eigen::Vector3d aside(2.0, 0.0, 0.0);
   EXPECT_LT(squared(without_depth, along), 0.8 * squared({}, along));
   EXPECT_NEAR(squared(without_depth, aside), squared({}, aside), 1e-6);
+}
+
+// Once round a square of ten steps a side, each a metre in truth, of a camera without depth whose
+// scale creeps by as much at every keyframe.
+scene::MapVersion square_seen_without_depth(double creep) {
+  const features::View view = features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
+  scene::Edit edit;
+  core::Rigid3 pose;
+  for (int i = 0; i <= 40; ++i) {
+    core::Rigid3 step;
+    step.translation = {0.0, 0.0, std::exp(-creep * (i - 0.5))};
+    if (i % 10 == 0)
+      step.rotation = Eigen::AngleAxisd(std::numbers::pi / 2.0, Eigen::Vector3d::UnitY());
+    scene::Keyframe keyframe;
+    keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
+    keyframe.view = view;
+    keyframe.slots.resize(static_cast<std::size_t>(view.features->size()));
+    if (i > 0) {
+      pose = pose * step;
+      keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), step,
+                           1e4 * core::Matrix6d::Identity()};
+    }
+    keyframe.world_from_body = pose;
+    edit.keyframes.push_back(keyframe);
+  }
+  return apply(scene::MapVersion{}, edit);
+}
+
+TEST(MeasureOdometry, WithoutDepthALoopTellsHowFarTheScaleCreptAndTheRestMustFit) {
+  const double creep = 0.02;
+  const scene::MapVersion map = square_seen_without_depth(creep);
+  const auto squared = [&](const Eigen::Vector3d& error, double log_scale) {
+    scene::LoopEdge loop = claim(40, 0, {Eigen::Quaterniond::Identity(), error});
+    loop.log_scale = log_scale;
+    return measure_odometry(map, loop, {}, {}).mahalanobis_squared;
+  };
+  const double limit = Config{}.max_odometry_chi_square;
+  const Eigen::Vector3d aside(2.0, 0.0, 0.0);
+  EXPECT_LT(squared(Eigen::Vector3d::Zero(), 40 * creep), 1.0) << "back where it began";
+  EXPECT_GT(squared(Eigen::Vector3d::Zero(), 0.0), limit) << "nothing crept, and yet far away";
+  EXPECT_GT(squared(aside, 40 * creep), limit) << "another corridor, seen at the same scale";
 }
 
 TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
@@ -78,7 +121,7 @@ TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
   edit.keyframes.resize(1);
   edit.keyframes[0].id = core::KeyframeId(3);
   map = apply(map, edit);
-  const auto evidence = measure_odometry(map, claim(3, 0, {}), 0.01, {});
+  const auto evidence = measure_odometry(map, claim(3, 0, {}), {}, {});
   EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
 }
 
@@ -101,14 +144,14 @@ scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres)
 
 TEST(MeasureRival, TheFirstLookAlikeHasNone) {
   const scene::MapVersion map = corridor_with_loop();
-  EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), 0.01, {}));
-  EXPECT_TRUE(measure_rival(map, sideways(map, 20, 1.8), 0.01, {}));
+  EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), {}, {}));
+  EXPECT_TRUE(measure_rival(map, sideways(map, 20, 1.8), {}, {}));
 }
 
 TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
   const scene::MapVersion map = corridor_with_loop();
   const auto after = [&](int keyframes, double metres) {
-    return *measure_rival(map, sideways(map, 20 + keyframes, metres), 0.01, {});
+    return *measure_rival(map, sideways(map, 20 + keyframes, metres), {}, {});
   };
   EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
   EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
@@ -133,23 +176,23 @@ scene::MapVersion corridor_moved_by(const std::vector<int>& queries, double metr
 
 TEST(MeasureRival, OdometrySpeaksForWhoSaysWhatItSaid) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 4.0);
-  const auto back = measure_rival(map, sideways(map, 24, -4.0), 0.01, {});
+  const auto back = measure_rival(map, sideways(map, 24, -4.0), {}, {});
   ASSERT_TRUE(back && back->gain);
   EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second only says what the first did";
   EXPECT_GT(*back->gain, 9.0);
-  const auto further = measure_rival(map, sideways(map, 24, 4.0), 0.01, {});
+  const auto further = measure_rival(map, sideways(map, 24, 4.0), {}, {});
   ASSERT_TRUE(further && further->gain);
   EXPECT_LT(*further->gain, -9.0);
 }
 
 TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
   scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  const auto without = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
+  const auto without = measure_rival(map, sideways(map, 24, -1.8), {}, {});
   ASSERT_TRUE(without && without->gain);
   scene::Edit edit;
   edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
   map = apply(map, edit);
-  const auto with = measure_rival(map, sideways(map, 24, -1.8), 0.01, {});
+  const auto with = measure_rival(map, sideways(map, 24, -1.8), {}, {});
   ASSERT_TRUE(with && with->gain);
   EXPECT_EQ(with->first_loop, core::CandidateId(20));
   EXPECT_GT(*with->gain, 3.0 * std::abs(*without->gain))
@@ -160,7 +203,7 @@ TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst
 TEST(MeasureRival, ALoopThatGoesWithTheContradictorsIsNoGroundForTheClaim) {
   const scene::MapVersion map =
       corridor_moved_by({20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70}, 4.0);
-  const auto rival = measure_rival(map, sideways(map, 72, -4.0), 0.01, {});
+  const auto rival = measure_rival(map, sideways(map, 72, -4.0), {}, {});
   ASSERT_TRUE(rival && rival->gain);
   EXPECT_EQ(rival->first_loop, core::CandidateId(20));
 }
@@ -171,16 +214,16 @@ TEST(MeasureRival, AMatchNearByIsNoEvidenceByItself) {
   scene::Edit edit;
   edit.loops.push_back(claim(60, 3, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 57.0}}));
   map = apply(map, edit);
-  const auto rival = measure_rival(
-      map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), 0.01, {});
+  const auto rival =
+      measure_rival(map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), {}, {});
   ASSERT_TRUE(rival && rival->gain);
   EXPECT_LT(*rival->gain, -10.0);
 }
 
 TEST(MeasureRival, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), 0.01, {})->gain);
-  const auto beyond = measure_rival(map, sideways(map, 24, 8.0), 0.01, {});
+  EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), {}, {})->gain);
+  const auto beyond = measure_rival(map, sideways(map, 24, 8.0), {}, {});
   EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_rival_chi_square);
   EXPECT_FALSE(beyond->gain);
 }
@@ -191,7 +234,7 @@ TEST(MeasureRival, WithoutDepthNothingIsCompared) {
   scene::Edit edit;
   edit.loops.push_back(sideways(map, 20, 0.0));
   map = apply(map, edit);
-  const auto rival = measure_rival(map, sideways(map, 22, 1.8), 0.01, {});
+  const auto rival = measure_rival(map, sideways(map, 22, 1.8), {}, {});
   ASSERT_TRUE(rival);
   EXPECT_GT(rival->mahalanobis_squared, Config{}.max_rival_chi_square);
   EXPECT_FALSE(rival->gain);

@@ -51,7 +51,8 @@ class Odometry {
     const core::Rigid3 claimed = inverse(world_from_body(map_, chain.begin)) *
                                  world_from_body(map_, claim.match) * claim.match_from_query;
     const core::Vector6d error = difference(chain.begin_from_end.a_from_b, claimed);
-    const Eigen::LDLT<core::Matrix6d> covariance(covariance_with_loop(map_, chain, 0.0, config_));
+    const Eigen::LDLT<core::Matrix6d> covariance(chain.begin_from_end.covariance +
+                                                 loop_information(config_).inverse());
     return {error.dot(covariance.solve(error)), covariance.vectorD().array().log().sum()};
   }
 
@@ -123,22 +124,22 @@ void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, co
 bool may_compare(const scene::MapVersion& map, const scene::LoopEdge& claim,
                  const core::RivalEvidence& rival, const Config& config) {
   return rival.mahalanobis_squared > config.max_rival_chi_square && !is_without_depth(map) &&
-         measure_odometry(map, claim, 0.0, config).mahalanobis_squared <=
+         measure_odometry(map, claim, {}, config).mahalanobis_squared <=
              config.max_odometry_chi_square;
 }
 
 }  // namespace
 
 std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
-                                                 const scene::LoopEdge& claim, double scale_sigma,
-                                                 const Config& config) {
+                                                 const scene::LoopEdge& claim,
+                                                 const ScaleErrors& scale, const Config& config) {
   const scene::LoopEdge* loop = last_loop_before(map, claim.query);
   if (loop == nullptr || !is_comparable(map, claim, *loop)) return std::nullopt;
   scene::LoopEdge since_loop = claim;
   since_loop.match = loop->query;
   since_loop.match_from_query = inverse(world_from_body(map, loop->query)) *
                                 world_from_body(map, claim.match) * claim.match_from_query;
-  const core::OdometryEvidence found = measure_odometry(map, since_loop, scale_sigma, config);
+  const core::OdometryEvidence found = measure_odometry(map, since_loop, scale, config);
   core::RivalEvidence rival{.frame = map.at(loop->match).view.frame,
                             .apart_m = found.correction_m,
                             .apart_rad = found.correction_rad,

@@ -5,6 +5,7 @@
 #include <samewhere/core/verdict.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/verify/config.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::verify {
 
@@ -17,7 +18,7 @@ namespace samewhere::verify {
 // with it. Beyond max_rival_chi_square, also how much likelier odometry makes the claim than the
 // first of the loops on its path that contradict it (docs/decisions/023).
 std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
-                                                 const scene::LoopEdge& claim, double scale_sigma,
-                                                 const Config& config);
+                                                 const scene::LoopEdge& claim,
+                                                 const ScaleErrors& scale, const Config& config);
 
 }  // namespace samewhere::verify

@@ -1,4 +1,6 @@
-#include <samewhere/verify/measure_odometry.hpp>
+#include <cmath>
+#include <vector>
+
 #include <samewhere/verify/odometry_chain.hpp>
 
 namespace samewhere::verify {
@@ -10,17 +12,50 @@ UncertainPose edge_of(const scene::Keyframe& keyframe) {
   return {keyframe.odometry->parent_from_keyframe, keyframe.odometry->information.inverse()};
 }
 
-// Of the end's position in the beginning, if the scale crept by a share of 1 at each keyframe
-// passed.
-Eigen::Matrix3d covariance_of_creep(const scene::MapVersion& map, const OdometryChain& chain) {
-  const core::Rigid3 begin_from_world = inverse(world_from_body(map, chain.begin));
-  const Eigen::Vector3d there = world_from_body(map, chain.end).translation;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const auto& id : chain.passed) {
-    const Eigen::Vector3d rest =
-        begin_from_world.rotation * (there - world_from_body(map, id).translation);
-    covariance += rest * rest.transpose();
+// Of a path, from its beginning on, in the frame of the beginning: each step as long as the crept
+// scale makes it.
+struct StretchedPath {
+  std::vector<Eigen::Vector3d> steps;
+  double stretch = 1.0;  // how many times as long it is
+};
+
+StretchedPath stretched(const scene::MapVersion& map, const OdometryChain& chain,
+                        double log_scale) {
+  const Eigen::Quaterniond begin_from_world =
+      world_from_body(map, chain.begin).rotation.conjugate();
+  StretchedPath path;
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t i = chain.path.size() - 1; i-- > 0;) {
+    const Eigen::Vector3d step =
+        begin_from_world * (world_from_body(map, chain.path[i]).translation -
+                            world_from_body(map, chain.path[i + 1]).translation);
+    const double share =
+        (static_cast<double>(path.steps.size()) + 0.5) / static_cast<double>(chain.path.size() - 1);
+    path.steps.emplace_back(std::exp(share * log_scale) * step);
+    before += step.norm();
+    after += path.steps.back().norm();
   }
+  if (before > 0.0) path.stretch = after / before;
+  return path;
+}
+
+// Of the end's position, if the scale crept by a share of 1 at each step at random, the sum of all
+// known with the error of a loop's scale.
+Eigen::Matrix3d covariance_of_creep(const StretchedPath& path, const ScaleErrors& scale) {
+  Eigen::Vector3d rest = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> rests;  // what creep at a step stretches
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (auto step = path.steps.rbegin(); step != path.steps.rend(); ++step) {
+    rests.emplace_back(rest + 0.5 * *step);
+    sum += rests.back();
+    rest += *step;
+  }
+  if (rests.empty()) return Eigen::Matrix3d::Zero();
+  const Eigen::Vector3d mean = sum / static_cast<double>(rests.size());
+  Eigen::Matrix3d covariance = scale.loop * scale.loop * mean * mean.transpose();
+  for (const Eigen::Vector3d& one : rests)
+    covariance += scale.creep * scale.creep * (one - mean) * (one - mean).transpose();
   return covariance;
 }
 
@@ -30,8 +65,8 @@ bool ClimbingChain::climb(const scene::MapVersion& map) {
   const scene::Keyframe& keyframe = map.at(chain_.begin);
   if (!keyframe.odometry) return false;
   chain_.begin_from_end = compose(edge_of(keyframe), chain_.begin_from_end);
-  chain_.passed.push_back(chain_.begin);
   chain_.begin = keyframe.odometry->parent;
+  chain_.path.push_back(chain_.begin);
   return true;
 }
 
@@ -47,17 +82,24 @@ std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core
   chain.begin = begin;
   chain.begin_from_end =
       compose(inverse(to_begin.chain().begin_from_end), to_end.chain().begin_from_end);
-  chain.passed.insert(chain.passed.end(), to_begin.chain().passed.begin(),
-                      to_begin.chain().passed.end());
+  const auto& down = to_begin.chain().path;  // ends where the other ends
+  chain.path.insert(chain.path.end(), down.rbegin() + 1, down.rend());
   return chain;
 }
 
-core::Matrix6d covariance_with_loop(const scene::MapVersion& map, const OdometryChain& chain,
-                                    double scale_sigma, const Config& config) {
-  core::Matrix6d covariance = chain.begin_from_end.covariance + loop_information(config).inverse();
-  if (is_without_depth(map))
-    covariance.topLeftCorner<3, 3>() += scale_sigma * scale_sigma * covariance_of_creep(map, chain);
-  return covariance;
+UncertainPose with_crept_scale(const scene::MapVersion& map, const OdometryChain& chain,
+                               double log_scale, const ScaleErrors& scale) {
+  const StretchedPath path = stretched(map, chain, log_scale);
+  UncertainPose expected{
+      inverse(world_from_body(map, chain.begin)) * world_from_body(map, chain.end),
+      chain.begin_from_end.covariance};
+  expected.a_from_b.translation.setZero();
+  for (const Eigen::Vector3d& step : path.steps) expected.a_from_b.translation += step;
+  core::Vector6d lengths = core::Vector6d::Ones();
+  lengths.head<3>().setConstant(path.stretch);
+  expected.covariance = lengths.asDiagonal() * expected.covariance * lengths.asDiagonal();
+  expected.covariance.topLeftCorner<3, 3>() += covariance_of_creep(path, scale);
+  return expected;
 }
 
 core::Vector6d difference(const core::Rigid3& known, const core::Rigid3& claimed) {

@@ -7,17 +7,19 @@
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/verify/config.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
 
 // For the files of this folder that hold claims against odometry.
 
 namespace samewhere::verify {
 
-// What odometry alone measured from one keyframe to another, and the keyframes that it passed.
+// What odometry alone measured from one keyframe to another, and its path from the end back to the
+// beginning, both included.
 struct OdometryChain {
   core::KeyframeId begin;
   core::KeyframeId end;
   geometry::UncertainPose begin_from_end;
-  std::vector<core::KeyframeId> passed;
+  std::vector<core::KeyframeId> path;
 };
 
 // Through their youngest common ancestor; keyframes are older than their children. Nothing between
@@ -28,7 +30,10 @@ std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core
 // A chain that ends with a keyframe and is made longer at its beginning, towards the origin.
 class ClimbingChain {
  public:
-  explicit ClimbingChain(core::KeyframeId end) { chain_.begin = chain_.end = end; }
+  explicit ClimbingChain(core::KeyframeId end) {
+    chain_.begin = chain_.end = end;
+    chain_.path = {end};
+  }
 
   core::KeyframeId begin() const { return chain_.begin; }
   const OdometryChain& chain() const { return chain_; }
@@ -39,11 +44,13 @@ class ClimbingChain {
   OdometryChain chain_;
 };
 
-// Of what odometry and a loop together know of the end in the beginning. Of a camera without depth,
-// also what its scale may have crept: a share of scale_sigma at every keyframe passed, which
-// stretches the rest of the way.
-core::Matrix6d covariance_with_loop(const scene::MapVersion& map, const OdometryChain& chain,
-                                    double scale_sigma, const Config& config);
+// Where the end is in the beginning, in lengths of the beginning, if its scale is known to have
+// crept by exp(log_scale) on the way, spread evenly over the keyframes but for what it creeps at
+// random (a Brownian bridge), in a map that has the path in one scale. How fast it creeps evenly
+// need not be known. The covariance is that of the chain, as much longer as the path, and of the
+// scale.
+geometry::UncertainPose with_crept_scale(const scene::MapVersion& map, const OdometryChain& chain,
+                                         double log_scale, const ScaleErrors& scale);
 
 // How far a claimed pose is from a known one [m in `begin`; rad].
 core::Vector6d difference(const core::Rigid3& known, const core::Rigid3& claimed);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -16,7 +17,8 @@ using testing::HasSubstr;
 class PairNetworkFile : public testing::Test {
  protected:
   std::string write(const network::test::TestNetwork& network) const {
-    const std::string path = testing::TempDir() + "samewhere_pair_network.onnx";
+    const std::string path =
+        testing::TempDir() + "samewhere_pair_network_" + std::to_string(getpid()) + ".onnx";
     core::write_file(path, network::test::onnx_file(network));
     return path;
   }
