@@ -61,6 +61,15 @@ struct RivalEvidence {
   std::optional<double> gain = {};
 };
 
+// Another place that the same view may show as well, and that the map knows to be another one: of
+// these the one with most inliers.
+struct OtherPlaceEvidence {
+  FrameId frame;  // shows that place
+  int num_inliers = 0;
+  double apart_m = 0.0;  // how far it would put the query from where this place would
+  double apart_rad = 0.0;
+};
+
 // What the views around the query say: whether they go on to match the views around the match.
 // Views are counted by what they show, so a camera that stands still sees one.
 struct SequenceEvidence {
@@ -77,6 +86,7 @@ struct Evidence {
   std::optional<GeometryEvidence> geometry;
   std::optional<OdometryEvidence> odometry;
   std::optional<RivalEvidence> rival;
+  std::optional<OtherPlaceEvidence> other_place;
   std::optional<SequenceEvidence> sequence;
 };
 

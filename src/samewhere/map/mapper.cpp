@@ -145,7 +145,7 @@ scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair) {
   const core::KeyframeId first_id = edit.keyframes.front().id;
   scene::Keyframe& second = edit.keyframes.back();
   second.id = core::KeyframeId(first_id.value() + 1);
-  second.odometry = {first_id, world_from_second, core::Matrix6d::Identity()};
+  second.odometry = {first_id, world_from_second, pair.information};
   for (std::size_t i = 0; i < pair.matches.size(); ++i) {
     scene::Landmark landmark;
     landmark.id = core::LandmarkId(map.landmarks.size() + i);

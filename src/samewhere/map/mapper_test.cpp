@@ -106,6 +106,7 @@ class WithoutDepth : public testing::Test {
     ViewPair pair{features::test_view(world_, 0, {}, 0.3, false),
                   view_at(1, second_pose_),
                   second_pose_,
+                  400.0 * core::Matrix6d::Identity(),
                   {},
                   {}};
     pair.matches = features::match_pair(pair.first.features->descriptors,
@@ -172,7 +173,8 @@ TEST_F(WithoutDepth, AMapThatIsGivenUpBeginsAnewBesideItsOldKeyframes) {
   const scene::MapVersion given_up = apply(map_, give_up(map_));
   EXPECT_EQ(num_live(given_up.landmarks), 0U);
   EXPECT_EQ(num_live(given_up.keyframes), 2U);
-  ViewPair pair{view_at(5, {}), view_at(6, second_pose_), second_pose_, {}, {}};
+  ViewPair pair{
+      view_at(5, {}), view_at(6, second_pose_), second_pose_, core::Matrix6d::Identity(), {}, {}};
   pair.matches = {{0, 0, 0}, {1, 1, 0}};
   pair.points_in_first = {{0.0, 0.0, 2.0}, {0.5, 0.0, 2.0}};
   const scene::MapVersion anew = apply(given_up, start_map(given_up, pair));

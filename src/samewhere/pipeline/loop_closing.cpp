@@ -24,6 +24,11 @@ verify::ScaleErrors scale_errors(const Config& config) {
   return {.creep = config.optimize.odometry_scale_sigma, .loop = config.optimize.loop_scale_sigma};
 }
 
+std::optional<core::Sim3> pose_of(const core::LedgerRow& row) {
+  const auto& geometry = core::evidence_of(row.verdict).geometry;
+  return geometry ? geometry->match_from_query : std::nullopt;
+}
+
 // The keyframes that frames are, as a version of the map has them.
 class Places {
  public:
@@ -43,6 +48,10 @@ class Places {
       return verify::measure_rival(map_, claim_of(candidate, match_from_query), scale,
                                    config.verify);
     };
+    knowledge.measure_other_place = [=, this, &config](const core::LedgerRow& row,
+                                                       const core::LedgerRow& other) {
+      return other_place(row, other, scale, config);
+    };
     if (is_without_depth_)
       knowledge.view_of = [this](core::FrameId frame) {
         return with_known_depths(map_, at(frame));
@@ -57,6 +66,24 @@ class Places {
   }
 
  private:
+  // Keyframes that share landmarks show one place, whatever odometry says.
+  std::optional<core::OtherPlaceEvidence> other_place(const core::LedgerRow& row,
+                                                      const core::LedgerRow& other,
+                                                      const verify::ScaleErrors& scale,
+                                                      const Config& config) const {
+    const auto pose = pose_of(row);
+    const auto other_pose = pose_of(other);
+    if (!pose || !other_pose) return std::nullopt;
+    const core::KeyframeId there = holder_of(map_, at(other.candidate.match)).keyframe;
+    if (neighbours_of(map_, holder_of(map_, at(row.candidate.match)).keyframe,
+                      config.map.min_shared)
+            .contains(there))
+      return std::nullopt;
+    return verify::measure_other_place(map_, claim_of(row.candidate, *pose),
+                                       claim_of(other.candidate, *other_pose), scale,
+                                       config.verify);
+  }
+
   scene::LoopEdge claim_of(const core::Candidate& candidate,
                            const core::Sim3& match_from_query) const {
     scene::LoopEdge claim;

@@ -101,10 +101,14 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
   const bool may_wait = may_need_sequences(settings_.verify);
   if (may_wait) numbered_.add(view, descriptor);
   std::vector<core::LedgerRow> rows;
+  const verify::History before = history_;
   for (const core::Candidate& candidate : candidates) {
     rows.push_back(judged(candidate, view, map, settings_));
-    wait_or_pause(rows.back());
+    note_loop(rows.back());  // a second one of this view may have to pause
   }
+  history_ = before;
+  if (map.measure_other_place) hold_against_each_other(map, rows);
+  for (const core::LedgerRow& row : rows) wait_or_pause(row);
   look_around(descriptor, view, map, rows);
   if (!may_wait) return rows;
   for (const core::Candidate& candidate : foretold(descriptor)) {
@@ -157,12 +161,36 @@ std::optional<core::Candidate> LoopDetector::beside(const core::Candidate& candi
                          .is_foretold = true};
 }
 
+void LoopDetector::hold_against_each_other(const MapKnowledge& map,
+                                           std::vector<core::LedgerRow>& rows) const {
+  const std::vector<core::LedgerRow> claims = rows;  // each as it is for itself
+  for (core::LedgerRow& row : rows) {
+    if (!core::is_loop(row.verdict)) continue;
+    core::Evidence evidence = core::evidence_of(row.verdict);
+    for (const core::LedgerRow& other : claims) {
+      if (!core::is_loop(other.verdict) || other.candidate.id == row.candidate.id) continue;
+      auto found = map.measure_other_place(row, other);
+      if (!found) continue;
+      found->num_inliers = core::evidence_of(other.verdict).geometry->num_inliers;
+      if (!evidence.other_place || found->num_inliers > evidence.other_place->num_inliers)
+        evidence.other_place = found;
+    }
+    if (evidence.other_place)
+      row.verdict = verify::decide(row.candidate, evidence, history_, settings_.verify);
+  }
+}
+
+void LoopDetector::note_loop(const core::LedgerRow& row) {
+  if (core::is_loop(row.verdict))
+    history_.last_loop_query =
+        std::max(history_.last_loop_query, std::optional(row.candidate.query));
+}
+
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {
   const core::Candidate& candidate = row.candidate;
   if (may_need_sequences(settings_.verify) || settings_.verify.look_around_frames > 0)
     was_judged_.insert({candidate.query, candidate.match});
-  if (core::is_loop(row.verdict))
-    history_.last_loop_query = std::max(history_.last_loop_query, std::optional(candidate.query));
+  note_loop(row);
   const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
   if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
     waiting_.add(row.candidate, ambiguous->evidence);

@@ -30,6 +30,11 @@ using MeasureOdometry = std::function<std::optional<core::OdometryEvidence>(
 using MeasureRival = std::function<std::optional<core::RivalEvidence>(
     const core::Candidate& candidate, const core::Sim3& match_from_query)>;
 
+// How far apart two candidates for one view put it; nothing unless the map knows that they show two
+// places.
+using MeasureOtherPlace = std::function<std::optional<core::OtherPlaceEvidence>(
+    const core::LedgerRow& row, const core::LedgerRow& other)>;
+
 // Whether the map holds the two views together already, by landmarks that both show: a loop between
 // them would say nothing new.
 using IsConnected = std::function<bool(core::FrameId match)>;
@@ -41,6 +46,7 @@ using ViewOf = std::function<features::View(core::FrameId frame)>;
 struct MapKnowledge {
   MeasureOdometry measure_odometry;
   MeasureRival measure_rival = {};
+  MeasureOtherPlace measure_other_place = {};
   ViewOf view_of = {};  // of a camera without depth: so its views have some, each in its own scale
 };
 
@@ -84,7 +90,10 @@ class LoopDetector {
   std::vector<core::LedgerRow> settle_all() { return waiting_.settle_all(); }
 
  private:
+  void note_loop(const core::LedgerRow& row);
   void wait_or_pause(const core::LedgerRow& row);
+  // Loops of one view that show two places: the verdict on each may change.
+  void hold_against_each_other(const MapKnowledge& map, std::vector<core::LedgerRow>& rows) const;
   // Beside the best candidate's match: who shows more of the same?
   void look_around(const core::Descriptor& descriptor, const features::View& view,
                    const MapKnowledge& map, std::vector<core::LedgerRow>& rows);

@@ -86,6 +86,55 @@ TEST(LoopDetector, WithoutDepthWhoIsLostMayMatchWhatIsNotClearEnoughForALoop) {
   EXPECT_EQ(num_matches(loops[0]), 0);
 }
 
+// Two views of the map that show the same things, and that the map knows to be two places; a view
+// that shows what both show.
+class TwoPlaces : public testing::Test {
+ protected:
+  // What is said of both, if the second was seen from a direction that shows less.
+  std::vector<core::LedgerRow> judged(double turned_rad, bool are_two) {
+    Config config;
+    config.retrieve.window_frames = 40;
+    LoopDetector detector(config);
+    const features::TestWorld world = features::test_world(3);
+    const auto view = [&](int frame, double angle_rad) {
+      return features::test_view(world, frame, core::Rigid3{core::exp_so3({0.0, angle_rad, 0.0})});
+    };
+    const auto described = [](std::uint64_t frame) {
+      return core::Descriptor{.frame = core::FrameId(frame), .unit = {0.6F, 0.0F, 0.8F}};
+    };
+    MapKnowledge map;
+    map.measure_odometry = [](const auto&, const auto&) { return std::nullopt; };
+    map.measure_other_place = [&](const core::LedgerRow&, const core::LedgerRow& other) {
+      return are_two ? std::optional(core::OtherPlaceEvidence{.frame = other.candidate.match})
+                     : std::nullopt;
+    };
+    detector.judge(described(0), {}, view(0, 0.0), map);
+    detector.judge(described(1), {}, view(1, turned_rad), map);
+    return detector.judge(described(90), {candidate(90, 0, 0.9), candidate(90, 1, 0.8)},
+                          view(90, 0.0), map);
+  }
+
+  static std::vector<std::string_view> verdicts(const std::vector<core::LedgerRow>& rows) {
+    std::vector<std::string_view> names;
+    for (const auto& row : rows) names.push_back(core::name_of(row.verdict));
+    return names;
+  }
+};
+
+TEST_F(TwoPlaces, ThatShowAViewAsWellAreAmbiguous) {
+  EXPECT_EQ(verdicts(judged(0.0, true)), (std::vector<std::string_view>{"AMBIGUOUS", "AMBIGUOUS"}));
+  EXPECT_EQ(verdicts(judged(0.0, false)), (std::vector<std::string_view>{"LOOP", "LOOP"}));
+}
+
+TEST_F(TwoPlaces, OfWhichOneShowsFarMoreAreThatOne) {
+  const auto rows = judged(0.4, true);
+  EXPECT_EQ(verdicts(rows), (std::vector<std::string_view>{"LOOP", "AMBIGUOUS"}));
+  const auto& other = core::evidence_of(rows[1].verdict).other_place;
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->frame, core::FrameId(0));
+  EXPECT_EQ(other->num_inliers, core::evidence_of(rows[0].verdict).geometry->num_inliers);
+}
+
 // A camera turns about itself, a view every two degrees and a bit, and then shows once more what
 // `seen_again` has shown.
 class TurnAround {

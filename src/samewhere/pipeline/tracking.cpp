@@ -31,7 +31,8 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
       place_finder_(config_, lost_tracker_),
       mapping_(mapping) {
   if (depth_from == DepthFrom::kMotion) {
-    starter_.emplace(track::StartSettings{config.track.start, config.features,
+    starter_.emplace(track::StartSettings{config.track.start, config.track.drift, config.features,
+                                          config.optimize,
                                           static_cast<std::uint64_t>(config.seed)});
   }
 }

@@ -46,9 +46,9 @@ std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& fra
   auto started = starter_->offer(view);
   if (!started) return std::nullopt;
   const track::Start& start = started->start;
-  mapping_.send(StartMapByMotion{
-      {started->first, view, start.first_from_second, start.matches, start.points_in_first},
-      frame.images[0]});
+  mapping_.send(StartMapByMotion{{started->first, view, start.first_from_second, start.information,
+                                  start.matches, start.points_in_first},
+                                 frame.images[0]});
   const auto num_landmarks = static_cast<int>(start.matches.size());
   give_up_poses();
   begin_tracking(view, num_landmarks);

@@ -28,6 +28,13 @@ void add_rival(Json& scores, const core::RivalEvidence& rival) {
   add_score(scores, "rival_gain", *rival.gain);
 }
 
+void add_other_place(Json& scores, const core::OtherPlaceEvidence& other) {
+  scores["other_place"] = other.frame.index();
+  scores["other_place_inliers"] = other.num_inliers;
+  add_score(scores, "other_place_apart_m", other.apart_m);
+  add_score(scores, "other_place_apart_rad", other.apart_rad);
+}
+
 Json scores_of(const core::Verdict& verdict) {
   const core::Evidence& evidence = core::evidence_of(verdict);
   Json scores = Json::object();
@@ -52,6 +59,7 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
   }
   if (evidence.rival) add_rival(scores, *evidence.rival);
+  if (evidence.other_place) add_other_place(scores, *evidence.other_place);
   if (evidence.sequence) {
     scores["query_view"] = evidence.sequence->query_view;
     scores["match_view"] = evidence.sequence->match_view;

@@ -90,6 +90,12 @@ class Entry {
       evidence.odometry = {score("correction_m").value_or(0.0),
                            score("correction_rad").value_or(0.0), *squared};
     if (scores_.contains("rival")) evidence.rival = rival();
+    if (scores_.contains("other_place"))
+      evidence.other_place = {
+          .frame = core::FrameId(scores_.at("other_place").get<std::uint64_t>()),
+          .num_inliers = scores_.at("other_place_inliers").get<int>(),
+          .apart_m = score("other_place_apart_m").value_or(0.0),
+          .apart_rad = score("other_place_apart_rad").value_or(0.0)};
     if (scores_.contains("query_view")) evidence.sequence = sequence();
     return evidence;
   }

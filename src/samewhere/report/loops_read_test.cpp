@@ -130,6 +130,22 @@ TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithWhatSpokeForIt) {
               HasSubstr("the camera where frame 3 was taken, 1.80 m from here, but odometry"));
 }
 
+TEST_F(LoopsRead, AnotherPlaceThatExplainsTheViewIsReadBack) {
+  core::Evidence torn = evidence(0.8, 100, 50);
+  torn.other_place = core::OtherPlaceEvidence{
+      .frame = core::FrameId(3), .num_inliers = 49, .apart_m = 5.9, .apart_rad = 0.02};
+  const core::Candidate about = candidate(0, 9, 2, 0.8);
+  const std::string text =
+      loops_json({{about, core::Ambiguous{about.id, torn, core::Refusal::kRival, "two places"}}});
+  const core::Ledger found = read(text);
+  EXPECT_EQ(loops_json(found), text);
+  const auto& other = core::evidence_of(found.at(0).verdict).other_place;
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->frame, core::FrameId(3));
+  EXPECT_EQ(other->num_inliers, 49);
+  EXPECT_EQ(other->apart_m, 5.9);
+}
+
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})

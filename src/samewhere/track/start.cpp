@@ -7,8 +7,12 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
+#include <samewhere/features/pyramid.hpp>
+#include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/essential.hpp>
 #include <samewhere/geometry/triangulation.hpp>
+#include <samewhere/optimize/motion_only.hpp>
+#include <samewhere/track/drift_model.hpp>
 #include <samewhere/track/start.hpp>
 
 namespace samewhere::track {
@@ -131,6 +135,27 @@ std::optional<NoStart> refusal_of(const Start& start, const BestMotion& best,
   return std::nullopt;
 }
 
+// As sure as the second view is located among the points of both.
+core::Matrix6d information_of(const Start& start, const View& first, const View& second,
+                              const StartSettings& settings) {
+  const Rigid3& first_body_from_camera = first.rig->body_from_camera[0];
+  const std::vector<double> scales = features::level_scales(settings.features);
+  optimize::MotionProblem problem{geometry::pinhole(second.rig->cameras[0]), 0.0, {}};
+  for (std::size_t i = 0; i < start.matches.size(); ++i) {
+    const auto feature = static_cast<std::size_t>(start.matches[i].second);
+    optimize::MotionObservation seen;
+    seen.point_in_world = first_body_from_camera * start.points_in_first[i];
+    seen.undistorted_px = second.features->undistorted_px[feature].cast<double>();
+    seen.sigma_px = scales[static_cast<std::size_t>(second.features->octave[feature])];
+    problem.observations.push_back(seen);
+  }
+  const Rigid3 camera_from_body =
+      inverse(start.first_from_second) * inverse(first_body_from_camera);
+  const auto located = optimize::refine_pose(problem, camera_from_body, settings.optimize);
+  return odometry_information(camera_from_body, second.rig->body_from_camera[0], located.covariance,
+                              false, settings.drift);
+}
+
 }  // namespace
 
 Result<Start, NoStart> try_start(const View& first, const View& second,
@@ -157,6 +182,7 @@ Result<Start, NoStart> try_start(const View& first, const View& second,
     reason->num_matches = num_matches;
     return refuse(*std::move(reason));
   }
+  start.information = information_of(start, first, second, settings);
   return start;
 }
 

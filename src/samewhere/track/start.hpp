@@ -8,6 +8,7 @@
 #include <samewhere/features/config.hpp>
 #include <samewhere/features/features.hpp>
 #include <samewhere/features/match_pair.hpp>
+#include <samewhere/optimize/config.hpp>
 #include <samewhere/track/config.hpp>
 #include <samewhere/track/two_view_model.hpp>
 
@@ -16,7 +17,9 @@ namespace samewhere::track {
 // What two views of one camera say about its motion and about the points that both see. The scale
 // is free: the median depth of the points in the first camera is 1.
 struct Start {
-  core::Rigid3 first_from_second;                // camera 0 of either view
+  core::Rigid3 first_from_second;                           // camera 0 of either view
+  core::Matrix6d information = core::Matrix6d::Identity();  // of the second body in the first,
+                                                            // odometry_information()
   std::vector<features::Match> matches;          // first and second: the features that show a point
   std::vector<Eigen::Vector3d> points_in_first;  // one per match, in the first camera
   double median_parallax_rad = 0.0;              // of all matches that agree with the motion
@@ -25,7 +28,9 @@ struct Start {
 
 struct StartSettings {
   StartConfig start;
+  DriftConfig drift;
   features::Config features;
+  optimize::Config optimize;
   std::uint64_t seed = 0;
 };
 

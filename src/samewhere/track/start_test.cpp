@@ -80,6 +80,30 @@ TEST(Start, PointsLieWhereTheyAreUpToTheScale) {
   EXPECT_LT(ratios[ratios.size() * 9 / 10] / ratios[ratios.size() / 10], 1.3);
 }
 
+// An edge of odometry that knows nothing gives way to any loop behind it.
+TEST(Start, ItsInformationTellsHowFarItIsOff) {
+  std::vector<double> squared;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const features::TestWorld world = features::test_world(seed);
+    const Rigid3 truth = sideways(seed);
+    const auto start = started(world, truth);
+    ASSERT_TRUE(start) << "seed " << seed;
+    const auto first = features::test_view(world, 0, {}, 0.5);
+    std::vector<double> scales;
+    for (std::size_t i = 0; i < start->matches.size(); ++i)
+      scales.push_back(features::point_in_camera(first, start->matches[i].first)->z() /
+                       start->points_in_first[i].z());
+    const Rigid3& found = start->first_from_second;
+    core::Vector6d error;
+    error << found.translation - truth.translation / *core::median(scales),
+        core::log_so3(truth.rotation.conjugate() * found.rotation);
+    squared.push_back(error.dot(start->information * error));
+    EXPECT_GT(start->information(0, 0), 1e3) << "within some centimetres, seed " << seed;
+  }
+  EXPECT_LT(*core::median(squared), 12.0);
+  EXPECT_GT(*core::median(squared), 0.1);
+}
+
 TEST(Start, OfAWallNeverTellsAWrongMotion) {
   int num_started = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

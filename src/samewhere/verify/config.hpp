@@ -30,6 +30,7 @@ struct Config {
   double max_odometry_chi_square = 16.81;
   double max_rival_chi_square = 30.0;
   double min_rival_gain = 6.0;
+  double max_other_place_ratio = 0.75;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
   bool measure_all = false;
@@ -118,6 +119,12 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
                  "the ratio",
          .min = 0.0,
          .max = 1e9});
+  visit(
+      "max_other_place_ratio", config.max_other_place_ratio,
+      {.help = "a candidate is ambiguous if another one of the same view has more than so many of "
+               "its inliers, passes all checks, and shows what the map knows to be another place",
+       .min = 0.0,
+       .max = 1e9});
   visit("loop_sigma_m", config.loop_sigma_m,
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
   visit("loop_sigma_rad", config.loop_sigma_rad,

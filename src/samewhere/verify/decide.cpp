@@ -110,6 +110,21 @@ std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evide
           config.max_rival_chi_square)};
 }
 
+// Two places that explain the view about as well.
+std::optional<core::Verdict> check_other_place(const Candidate& candidate, const Evidence& evidence,
+                                               const Config& config) {
+  if (!evidence.other_place) return std::nullopt;
+  const core::OtherPlaceEvidence& other = *evidence.other_place;
+  const int num_inliers = evidence.geometry->num_inliers;
+  if (other.num_inliers <= config.max_other_place_ratio * num_inliers) return std::nullopt;
+  return core::Ambiguous{
+      candidate.id, evidence, Refusal::kRival,
+      fmt::format("frame {} shows another place, {:.2f} m and {:.1f} degrees from here, with which "
+                  "{} features agree; at most {:.0f} % of the {} that agree here",
+                  other.frame.index(), other.apart_m, other.apart_rad * kDegrees, other.num_inliers,
+                  100.0 * config.max_other_place_ratio, num_inliers)};
+}
+
 // Not a loop yet, or never.
 std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Evidence& evidence,
                                             const Config& config) {
@@ -129,6 +144,7 @@ std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Ev
 std::optional<core::Verdict> check_other_views(const Candidate& candidate, const Evidence& evidence,
                                                const Config& config) {
   auto undecided = check_rival(candidate, evidence, config);
+  if (!undecided) undecided = check_other_place(candidate, evidence, config);
   if (!undecided && needs_sequence(*evidence.geometry, config))
     undecided = check_sequence(candidate, evidence, config);
   return undecided;

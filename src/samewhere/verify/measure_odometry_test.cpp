@@ -142,6 +142,21 @@ scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres)
   return claim(query, 3, match_from_query);
 }
 
+TEST(MeasureOtherPlace, TwoClaimsShowTwoPlacesIfOdometryCannotJoinThem) {
+  const scene::MapVersion map = corridor(40);
+  const core::Rigid3 here;
+  const auto places = [&](const scene::LoopEdge& one, const scene::LoopEdge& other) {
+    return measure_other_place(map, one, other, {}, {});
+  };
+  const auto apart = places(claim(39, 2, here), claim(39, 8, here));
+  ASSERT_TRUE(apart) << "it cannot be at both ends of six metres";
+  EXPECT_NEAR(apart->apart_m, 6.0, 1e-9);
+  EXPECT_TRUE(places(claim(39, 8, here), claim(39, 2, here))) << "whichever is asked first";
+  EXPECT_FALSE(
+      places(claim(39, 2, {Eigen::Quaterniond::Identity(), {0, 0, 6}}), claim(39, 8, here)))
+      << "one place, seen from two";
+}
+
 TEST(MeasureRival, TheFirstLookAlikeHasNone) {
   const scene::MapVersion map = corridor_with_loop();
   EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), {}, {}));

@@ -148,4 +148,26 @@ std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
   return rival;
 }
 
+std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVersion& map,
+                                                            const scene::LoopEdge& claim,
+                                                            const scene::LoopEdge& other,
+                                                            const ScaleErrors& scale,
+                                                            const Config& config) {
+  const auto pose_of = [](const scene::LoopEdge& edge) {
+    return core::Sim3{std::exp(edge.log_scale), edge.match_from_query.rotation,
+                      edge.match_from_query.translation};
+  };
+  const core::Sim3 other_from_claim = pose_of(other) * inverse(pose_of(claim));
+  scene::LoopEdge between;
+  between.query = claim.match;
+  between.match = other.match;
+  between.match_from_query = rigid_part(other_from_claim);
+  between.log_scale = std::log(other_from_claim.scale);
+  const core::OdometryEvidence found = measure_odometry(map, between, scale, config);
+  if (found.mahalanobis_squared <= config.max_rival_chi_square) return std::nullopt;
+  return core::OtherPlaceEvidence{.frame = map.at(other.match).view.frame,
+                                  .apart_m = found.correction_m,
+                                  .apart_rad = found.correction_rad};
+}
+
 }  // namespace samewhere::verify

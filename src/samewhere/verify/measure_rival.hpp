@@ -21,4 +21,13 @@ std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
                                                  const scene::LoopEdge& claim,
                                                  const ScaleErrors& scale, const Config& config);
 
+// Two claims about one view: how far apart they put it, if the map knows that they speak of two
+// places, for odometry cannot have drifted so much between their matches
+// (max_rival_chi_square). Nothing if they may be one place, or if nothing joins the two.
+std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVersion& map,
+                                                            const scene::LoopEdge& claim,
+                                                            const scene::LoopEdge& other,
+                                                            const ScaleErrors& scale,
+                                                            const Config& config);
+
 }  // namespace samewhere::verify

@@ -264,6 +264,20 @@ TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
   EXPECT_FALSE(std::get<core::LoopClosure>(agreeing).overruled.is_valid()) << "nothing contradicts";
 }
 
+TEST(Decide, WhereAnotherPlaceExplainsTheViewAboutAsWellNobodyCanTell) {
+  core::Evidence evidence = good_evidence();
+  evidence.geometry->num_inliers = 200;
+  evidence.other_place = core::OtherPlaceEvidence{
+      .frame = core::FrameId(20), .num_inliers = 150, .apart_m = 5.9, .apart_rad = 0.01};
+  EXPECT_EQ(stage(evidence, {}), "accepted");
+  evidence.other_place->num_inliers = 151;
+  const auto verdict = decide(candidate(100, 0), evidence, {}, {});
+  EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
+  EXPECT_EQ(core::stage_of(verdict), "rival");
+  EXPECT_NE(core::reason_of(verdict).find("frame 20 shows another place, 5.90 m"),
+            std::string::npos);
+}
+
 TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
   core::Evidence evidence = good_evidence();
   evidence.rival = core::RivalEvidence{
