@@ -17,7 +17,7 @@ struct Config {
   double loop_huber = 3.0;
   double loop_dcs = 1.0;
   int gnc_iterations = 3;
-  double odometry_scale_sigma = 0.01;
+  double odometry_scale_sigma = 0.015;
   double loop_scale_sigma = 0.05;
 };
 
@@ -25,8 +25,9 @@ struct Config {
 inline void visit_scale_fields(Config& config, core::FieldVisitor& visit) {
   visit(
       "odometry_scale_sigma", config.odometry_scale_sigma,
-      {.help = "of a camera without depth, how far its scale creeps from one keyframe to the next, "
-               "as a share",
+      {.help =
+           "of a camera without depth, how far its scale creeps at random from one keyframe to the "
+           "next, as a share",
        .min = 1e-6,
        .max = 1.0});
   visit("loop_scale_sigma", config.loop_scale_sigma,
