@@ -45,8 +45,9 @@ struct GeometryEvidence {
 struct OdometryEvidence {
   double correction_m = 0.0;    // how far the loop moves the query
   double correction_rad = 0.0;  //
-  double mahalanobis_squared =
-      0.0;  // of the correction under the drift model; chi-square with 6 degrees of freedom
+  // Of the correction under the drift model; chi-square with 6 degrees of freedom. Without depth,
+  // of what is left of it once the scale has crept as the candidate says.
+  double mahalanobis_squared = 0.0;
 };
 
 // The place where an earlier loop has put the query, and how far from there this one would put it.

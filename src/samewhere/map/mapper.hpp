@@ -23,8 +23,8 @@ struct TrackedView {
 struct ViewPair {
   features::View first;
   features::View second;
-  core::Rigid3 first_from_second;                // camera 0 of either
-  core::Matrix6d information;                    // of the second body in the first
+  core::Rigid3 first_from_second;                           // camera 0 of either
+  core::Matrix6d information = core::Matrix6d::Identity();  // of the second body in the first
   std::vector<features::Match> matches;          // first and second: features of either view
   std::vector<Eigen::Vector3d> points_in_first;  // one per match, in the first camera
 };

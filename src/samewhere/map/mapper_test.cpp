@@ -144,6 +144,7 @@ TEST_F(WithoutDepth, TwoViewsBecomeTwoKeyframesThatSeeTheSameLandmarks) {
   EXPECT_GT(num_points_, 100U);
   EXPECT_FALSE(map_.keyframes[0].odometry);
   EXPECT_EQ(map_.keyframes[1].odometry->parent, core::KeyframeId(0));
+  EXPECT_EQ(map_.keyframes[1].odometry->information(0, 0), 400.0);
   EXPECT_LT(core::log_r3so3(inverse(second_pose_) * map_.keyframes[1].world_from_body).norm(),
             1e-9);
   for (std::size_t i = 0; i < map_.landmarks.size(); ++i) {

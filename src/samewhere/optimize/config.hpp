@@ -17,7 +17,7 @@ struct Config {
   double loop_huber = 3.0;
   double loop_dcs = 1.0;
   int gnc_iterations = 3;
-  double odometry_scale_sigma = 0.015;
+  double odometry_scale_sigma = 0.01;
   double loop_scale_sigma = 0.05;
 };
 

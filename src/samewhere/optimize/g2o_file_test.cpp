@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -54,7 +55,8 @@ TEST(G2oFile, OdometryStaysOdometryWhereverItLeads) {
   };
   graph.edges = {edge(0, 1, false), edge(0, 3, false), edge(1, 2, false), edge(0, 3, true),
                  edge(1, 3, true),  edge(2, 1, true),  edge(3, 2, false), edge(2, 3, true)};
-  const std::filesystem::path path = testing::TempDir() + "g2o_odometry.g2o";
+  const std::filesystem::path path =
+      testing::TempDir() + "g2o_odometry_" + std::to_string(getpid()) + ".g2o";
   core::write_file(path, g2o_text(graph));
   const G2oGraph found = read_g2o(path);
   std::filesystem::remove(path);

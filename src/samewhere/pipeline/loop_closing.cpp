@@ -3,6 +3,7 @@
 
 #include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/report/jpeg.hpp>
+#include <samewhere/report/loops.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/measure_rival.hpp>
@@ -22,11 +23,6 @@ std::set<core::KeyframeId> neighbours_of(const scene::MapVersion& map, core::Key
 
 verify::ScaleErrors scale_errors(const Config& config) {
   return {.creep = config.optimize.odometry_scale_sigma, .loop = config.optimize.loop_scale_sigma};
-}
-
-std::optional<core::Sim3> pose_of(const core::LedgerRow& row) {
-  const auto& geometry = core::evidence_of(row.verdict).geometry;
-  return geometry ? geometry->match_from_query : std::nullopt;
 }
 
 // The keyframes that frames are, as a version of the map has them.
@@ -59,20 +55,28 @@ class Places {
     return knowledge;
   }
 
+  AcceptedLoop accepted(const core::LedgerRow& row, const core::LoopClosure& loop) const {
+    const scene::LoopEdge edge = edge_of(row, loop);
+    return {.edge = edge,
+            .overruled = loop.overruled,
+            .query_log_scale = map_.at(edge.query).log_scale,
+            .match_log_scale = map_.at(edge.match).log_scale};
+  }
+
+ private:
   scene::LoopEdge edge_of(const core::LedgerRow& row, const core::LoopClosure& loop) const {
     return {
         at(row.candidate.query), at(row.candidate.match), rigid_part(*loop.match_from_query),
         loop.information,        loop.candidate,          std::log(loop.match_from_query->scale)};
   }
 
- private:
   // Keyframes that share landmarks show one place, whatever odometry says.
   std::optional<core::OtherPlaceEvidence> other_place(const core::LedgerRow& row,
                                                       const core::LedgerRow& other,
                                                       const verify::ScaleErrors& scale,
                                                       const Config& config) const {
-    const auto pose = pose_of(row);
-    const auto other_pose = pose_of(other);
+    const auto pose = report::match_from_query_of(row.verdict);
+    const auto other_pose = report::match_from_query_of(other.verdict);
     if (!pose || !other_pose) return std::nullopt;
     const core::KeyframeId there = holder_of(map_, at(other.candidate.match)).keyframe;
     if (neighbours_of(map_, holder_of(map_, at(row.candidate.match)).keyframe,
@@ -168,7 +172,7 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   for (const auto& row : answer.rows) {
     const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
     if (loop != nullptr && loop->match_from_query)
-      answer.loops.push_back({places.edge_of(row, *loop), loop->overruled});
+      answer.loops.push_back(places.accepted(row, *loop));
   }
   answer.descriptor = detector_.descriptor(detector_.num_descriptors() - 1);
   return answer;

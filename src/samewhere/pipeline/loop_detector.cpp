@@ -101,14 +101,11 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
   const bool may_wait = may_need_sequences(settings_.verify);
   if (may_wait) numbered_.add(view, descriptor);
   std::vector<core::LedgerRow> rows;
-  const verify::History before = history_;
   for (const core::Candidate& candidate : candidates) {
     rows.push_back(judged(candidate, view, map, settings_));
-    note_loop(rows.back());  // a second one of this view may have to pause
+    wait_or_pause(rows.back());
   }
-  history_ = before;
   if (map.measure_other_place) hold_against_each_other(map, rows);
-  for (const core::LedgerRow& row : rows) wait_or_pause(row);
   look_around(descriptor, view, map, rows);
   if (!may_wait) return rows;
   for (const core::Candidate& candidate : foretold(descriptor)) {
@@ -180,17 +177,12 @@ void LoopDetector::hold_against_each_other(const MapKnowledge& map,
   }
 }
 
-void LoopDetector::note_loop(const core::LedgerRow& row) {
-  if (core::is_loop(row.verdict))
-    history_.last_loop_query =
-        std::max(history_.last_loop_query, std::optional(row.candidate.query));
-}
-
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {
   const core::Candidate& candidate = row.candidate;
   if (may_need_sequences(settings_.verify) || settings_.verify.look_around_frames > 0)
     was_judged_.insert({candidate.query, candidate.match});
-  note_loop(row);
+  if (core::is_loop(row.verdict))
+    history_.last_loop_query = std::max(history_.last_loop_query, std::optional(candidate.query));
   const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
   if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
     waiting_.add(row.candidate, ambiguous->evidence);

@@ -90,7 +90,6 @@ class LoopDetector {
   std::vector<core::LedgerRow> settle_all() { return waiting_.settle_all(); }
 
  private:
-  void note_loop(const core::LedgerRow& row);
   void wait_or_pause(const core::LedgerRow& row);
   // Loops of one view that show two places: the verdict on each may change.
   void hold_against_each_other(const MapKnowledge& map, std::vector<core::LedgerRow>& rows) const;

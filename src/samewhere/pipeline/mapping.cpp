@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +15,18 @@
 #include <samewhere/pipeline/mapping.hpp>
 
 namespace samewhere::pipeline {
+namespace {
+
+// Another loop of the same view, say, may have stretched what lies at its ends since.
+AcceptedLoop in_lengths_of_today(const scene::MapVersion& map, AcceptedLoop loop) {
+  const double query = map.at(loop.edge.query).log_scale - loop.query_log_scale;
+  const double match = map.at(loop.edge.match).log_scale - loop.match_log_scale;
+  loop.edge.match_from_query.translation *= std::exp(match);
+  loop.edge.log_scale += match - query;
+  return loop;
+}
+
+}  // namespace
 
 Mapping::Mapping(const Config& config, scene::MapVersion so_far, const Asks& asks, KeepMap keep_map)
     : config_(config),
@@ -116,8 +129,9 @@ bool Mapping::hear_loops(int max_unheard) {
     const LoopAnswer answer = loops_.receive();
     note(answer);
     for (const auto& loop : answer.loops) {
+      const AcceptedLoop measured = in_lengths_of_today(map_, loop);
       const bool is_of_today = answer.map_number >= withdrawn_at_;
-      const std::optional<AcceptedLoop> heard = is_of_today ? loop : judged_anew(loop);
+      const std::optional<AcceptedLoop> heard = is_of_today ? measured : judged_anew(measured);
       if (heard) were_parted |= correct(*heard);
     }
   }

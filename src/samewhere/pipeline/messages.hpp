@@ -87,6 +87,10 @@ using ToLoopClosing = std::variant<FindLoops, FindPlace>;
 struct AcceptedLoop {
   scene::LoopEdge edge;
   core::CandidateId overruled = {};  // valid: see core::LoopClosure
+  // Of its ends, in the map that it was measured in: loops that were closed since have changed
+  // their lengths.
+  double query_log_scale = 0.0;
+  double match_log_scale = 0.0;
 };
 
 struct LoopAnswer {

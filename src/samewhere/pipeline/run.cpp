@@ -165,17 +165,16 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   record.truth = aligned_truth(evaluation, truth);
 }
 
-// Frames that geometry takes for a place seen before and no views in a row confirm.
+// Frames that geometry takes for a place seen before and no views in a row confirm; none if any are
+// confirmed.
 std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger) {
   std::set<core::FrameId> unconfirmed;
-  std::set<core::FrameId> confirmed;
   for (const core::LedgerRow* row : report::final_rows(ledger)) {
+    if (core::is_loop(row->verdict)) return {};
     const auto* refused = std::get_if<core::Rejection>(&row->verdict);
-    if (core::is_loop(row->verdict)) confirmed.insert(row->candidate.query);
     if (refused != nullptr && refused->stage == core::Refusal::kSequence)
       unconfirmed.insert(row->candidate.query);
   }
-  std::erase_if(unconfirmed, [&](core::FrameId query) { return confirmed.contains(query); });
   return unconfirmed;
 }
 
@@ -190,7 +189,7 @@ std::optional<std::string> note_on(const core::Ledger& ledger, const Config& con
   const std::size_t num_unconfirmed = unconfirmed_queries(ledger).size();
   if (num_unconfirmed == 0) return std::nullopt;
   return fmt::format(
-      "{} frames match an earlier one, but no {} views in a row go on to; where no "
+      "{} frames match an earlier one, but no {} views in a row do; where no "
       "two places look alike, --set verify.min_views=1 believes each view",
       num_unconfirmed, config.verify.min_views);
 }

@@ -7,6 +7,7 @@ namespace samewhere::track {
 // How sure odometry may be of where a frame is relative to its reference keyframe.
 struct DriftConfig {
   double factor = 2.0;
+  double factor_without_depth = 3.0;
   double per_metre = 0.01;
   double per_radian = 0.01;
   double weak_factor = 3.0;
@@ -15,6 +16,10 @@ struct DriftConfig {
 inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
   visit("factor", config.factor,
         {.help = "errors of odometry are this many times what the residuals of a frame leave open",
+         .min = 0.01,
+         .max = 100.0});
+  visit("factor_without_depth", config.factor_without_depth,
+        {.help = "the same of a camera without depth, whose local map is known less well",
          .min = 0.01,
          .max = 100.0});
   visit("per_metre", config.per_metre,

@@ -49,6 +49,12 @@ core::Matrix6d odometry_information(const core::Rigid3& camera_from_reference,
   return (weak * weak * found).inverse();
 }
 
+DriftConfig drift_of(const features::View& view, const DriftConfig& config) {
+  DriftConfig drift = config;
+  if (!has_depth(view)) drift.factor = config.factor_without_depth;
+  return drift;
+}
+
 core::Matrix6d seen_from(const core::Rigid3& new_from_old_reference,
                          const core::Matrix6d& information) {
   core::Matrix6d turn = core::Matrix6d::Identity();

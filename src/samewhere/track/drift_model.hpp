@@ -1,6 +1,7 @@
 #pragma once
 
 #include <samewhere/core/rigid3.hpp>
+#include <samewhere/features/features.hpp>
 #include <samewhere/track/config.hpp>
 
 namespace samewhere::track {
@@ -14,6 +15,9 @@ core::Matrix6d odometry_information(const core::Rigid3& camera_from_reference,
                                     const core::Rigid3& body_from_camera,
                                     const core::Matrix6d& covariance, bool is_weak,
                                     const DriftConfig& config);
+
+// As it is for this view: `factor` is factor_without_depth if no feature of it has depth.
+DriftConfig drift_of(const features::View& view, const DriftConfig& config);
 
 // The same information, of the pose relative to another reference, which is known relative to the
 // first.

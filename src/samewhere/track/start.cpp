@@ -153,7 +153,7 @@ core::Matrix6d information_of(const Start& start, const View& first, const View&
       inverse(start.first_from_second) * inverse(first_body_from_camera);
   const auto located = optimize::refine_pose(problem, camera_from_body, settings.optimize);
   return odometry_information(camera_from_body, second.rig->body_from_camera[0], located.covariance,
-                              false, settings.drift);
+                              false, drift_of(second, settings.drift));
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ Track Tracker::make_track(const View& view, const LocalMap& map, const std::vect
   track.pose.reference_from_frame = reference_from_body(view, motion.camera_from_world);
   track.pose.information =
       odometry_information(motion.camera_from_world, view.rig->body_from_camera[0],
-                           motion.covariance, is_weak, settings_.track.drift);
+                           motion.covariance, is_weak, drift_of(view, settings_.track.drift));
   track.pose.num_inliers = motion.num_inliers;
   track.reprojection_rmse_px = motion.reprojection_rmse_px;
   return track;

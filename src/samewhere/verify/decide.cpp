@@ -73,6 +73,13 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
   return check_agreement(candidate, evidence, config);
 }
 
+// Without depth: what the scale would have to have done.
+std::string crept(const Evidence& evidence) {
+  const auto& pose = evidence.geometry->match_from_query;
+  if (!pose || pose->scale == 1.0) return "";
+  return fmt::format(", and what is 1 long to be {:.2f} long", pose->scale);
+}
+
 std::optional<Rejection> check_odometry(const Candidate& candidate, const Evidence& evidence,
                                         const Config& config) {
   if (!evidence.odometry ||
@@ -80,11 +87,11 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
     return std::nullopt;
   return rejection(
       candidate, evidence, Refusal::kOdometry,
-      fmt::format("would move the camera by {:.2f} m and {:.1f} degrees, more than odometry can "
-                  "have drifted "
-                  "(chi-square {:.0f}, at most {:.0f})",
+      fmt::format("would move the camera by {:.2f} m and {:.1f} degrees{}, more than odometry can "
+                  "have drifted (chi-square {:.0f}, at most {:.0f})",
                   evidence.odometry->correction_m, evidence.odometry->correction_rad * kDegrees,
-                  evidence.odometry->mahalanobis_squared, config.max_odometry_chi_square));
+                  crept(evidence), evidence.odometry->mahalanobis_squared,
+                  config.max_odometry_chi_square));
 }
 
 // Odometry can tell.
@@ -114,6 +121,8 @@ std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evide
 std::optional<core::Verdict> check_other_place(const Candidate& candidate, const Evidence& evidence,
                                                const Config& config) {
   if (!evidence.other_place) return std::nullopt;
+  // the other one may go with the loops that odometry speaks against
+  if (evidence.rival && overrules(*evidence.rival, config)) return std::nullopt;
   const core::OtherPlaceEvidence& other = *evidence.other_place;
   const int num_inliers = evidence.geometry->num_inliers;
   if (other.num_inliers <= config.max_other_place_ratio * num_inliers) return std::nullopt;

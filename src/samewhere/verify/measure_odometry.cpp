@@ -14,9 +14,7 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
   if (const auto chain = odometry_between(map, claim.match, claim.query)) {
-    const geometry::UncertainPose expected =
-        is_without_depth(map) ? with_crept_scale(map, *chain, claim.log_scale, scale)
-                              : geometry::UncertainPose{known, chain->begin_from_end.covariance};
+    const geometry::UncertainPose expected = expected_end(map, *chain, claim.log_scale, scale);
     const core::Vector6d error = difference(expected.a_from_b, claim.match_from_query);
     const core::Matrix6d covariance = expected.covariance + loop_information(config).inverse();
     evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));

@@ -8,7 +8,7 @@ namespace samewhere::verify {
 
 // Of a camera without depth: standard deviations of the logarithm of its scale.
 struct ScaleErrors {
-  double creep = 0.015; // from one keyframe to the next, at random
+  double creep = 0.01;  // from one keyframe to the next, at random
   double loop = 0.05;   // as a loop measures it
 };
 

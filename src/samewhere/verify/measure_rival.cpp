@@ -153,21 +153,28 @@ std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVers
                                                             const scene::LoopEdge& other,
                                                             const ScaleErrors& scale,
                                                             const Config& config) {
+  const auto chain = odometry_between(map, other.match, claim.match);
+  if (!chain) return std::nullopt;
+  const core::Matrix6d of_loop = loop_information(config).inverse();
   const auto pose_of = [](const scene::LoopEdge& edge) {
     return core::Sim3{std::exp(edge.log_scale), edge.match_from_query.rotation,
                       edge.match_from_query.translation};
   };
   const core::Sim3 other_from_claim = pose_of(other) * inverse(pose_of(claim));
-  scene::LoopEdge between;
-  between.query = claim.match;
-  between.match = other.match;
-  between.match_from_query = rigid_part(other_from_claim);
-  between.log_scale = std::log(other_from_claim.scale);
-  const core::OdometryEvidence found = measure_odometry(map, between, scale, config);
-  if (found.mahalanobis_squared <= config.max_rival_chi_square) return std::nullopt;
+  const geometry::UncertainPose by_other{other.match_from_query, of_loop};
+  const geometry::UncertainPose by_claim{claim.match_from_query, of_loop};
+  const geometry::UncertainPose claimed = geometry::compose(by_other, geometry::inverse(by_claim));
+  const geometry::UncertainPose known =
+      expected_end(map, *chain, std::log(other_from_claim.scale),
+                   {.creep = scale.creep, .loop = std::sqrt(2.0) * scale.loop});
+  const core::Vector6d error = difference(known.a_from_b, rigid_part(other_from_claim));
+  const core::Matrix6d covariance = known.covariance + claimed.covariance;
+  if (error.dot(covariance.llt().solve(error)) <= config.max_rival_chi_square) return std::nullopt;
+  const core::Rigid3 apart = inverse(world_from_body(map, claim.match) * claim.match_from_query) *
+                             (world_from_body(map, other.match) * other.match_from_query);
   return core::OtherPlaceEvidence{.frame = map.at(other.match).view.frame,
-                                  .apart_m = found.correction_m,
-                                  .apart_rad = found.correction_rad};
+                                  .apart_m = apart.translation.norm(),
+                                  .apart_rad = core::angle_rad(apart.rotation)};
 }
 
 }  // namespace samewhere::verify

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -16,23 +17,44 @@ UncertainPose edge_of(const scene::Keyframe& keyframe) {
 // scale makes it.
 struct StretchedPath {
   std::vector<Eigen::Vector3d> steps;
-  double stretch = 1.0;  // how many times as long it is
+  std::vector<bool> is_crept;  // on this step
+  double stretch = 1.0;        // how many times as long it is
 };
+
+// Between the ends of a loop the map has one scale.
+bool is_settled(const scene::MapVersion& map, core::KeyframeId from, core::KeyframeId to) {
+  const auto older = std::min(from, to);
+  const auto younger = std::max(from, to);
+  return std::any_of(map.loops.begin(), map.loops.end(), [&](const scene::LoopEdge& loop) {
+    return loop.match <= older && younger <= loop.query;
+  });
+}
+
+// Of each step from the beginning on: whether the scale crept on it.
+std::vector<bool> crept_steps(const scene::MapVersion& map, const OdometryChain& chain) {
+  std::vector<bool> is_crept;
+  for (std::size_t i = chain.path.size() - 1; i > 0; --i)
+    is_crept.push_back(!is_settled(map, chain.path[i], chain.path[i - 1]));
+  return is_crept;
+}
 
 StretchedPath stretched(const scene::MapVersion& map, const OdometryChain& chain,
                         double log_scale) {
+  StretchedPath path{.steps = {}, .is_crept = crept_steps(map, chain)};
+  const auto num_crept = std::count(path.is_crept.begin(), path.is_crept.end(), true);
+  const double rate = num_crept > 0 ? log_scale / static_cast<double>(num_crept) : 0.0;
   const Eigen::Quaterniond begin_from_world =
       world_from_body(map, chain.begin).rotation.conjugate();
-  StretchedPath path;
+  double crept = 0.0;
   double before = 0.0;
   double after = 0.0;
-  for (std::size_t i = chain.path.size() - 1; i-- > 0;) {
+  for (std::size_t i = chain.path.size() - 1; i > 0; --i) {
     const Eigen::Vector3d step =
-        begin_from_world * (world_from_body(map, chain.path[i]).translation -
-                            world_from_body(map, chain.path[i + 1]).translation);
-    const double share =
-        (static_cast<double>(path.steps.size()) + 0.5) / static_cast<double>(chain.path.size() - 1);
-    path.steps.emplace_back(std::exp(share * log_scale) * step);
+        begin_from_world * (world_from_body(map, chain.path[i - 1]).translation -
+                            world_from_body(map, chain.path[i]).translation);
+    const double on_step = path.is_crept[path.steps.size()] ? rate : 0.0;
+    path.steps.emplace_back(std::exp(crept + 0.5 * on_step) * step);
+    crept += on_step;
     before += step.norm();
     after += path.steps.back().norm();
   }
@@ -46,10 +68,13 @@ Eigen::Matrix3d covariance_of_creep(const StretchedPath& path, const ScaleErrors
   Eigen::Vector3d rest = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> rests;  // what creep at a step stretches
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (auto step = path.steps.rbegin(); step != path.steps.rend(); ++step) {
-    rests.emplace_back(rest + 0.5 * *step);
-    sum += rests.back();
-    rest += *step;
+  for (std::size_t i = path.steps.size(); i-- > 0;) {
+    const Eigen::Vector3d& step = path.steps[i];
+    if (path.is_crept[i]) {
+      rests.emplace_back(rest + 0.5 * step);
+      sum += rests.back();
+    }
+    rest += step;
   }
   if (rests.empty()) return Eigen::Matrix3d::Zero();
   const Eigen::Vector3d mean = sum / static_cast<double>(rests.size());
@@ -87,12 +112,13 @@ std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core
   return chain;
 }
 
-UncertainPose with_crept_scale(const scene::MapVersion& map, const OdometryChain& chain,
-                               double log_scale, const ScaleErrors& scale) {
-  const StretchedPath path = stretched(map, chain, log_scale);
+UncertainPose expected_end(const scene::MapVersion& map, const OdometryChain& chain,
+                           double log_scale, const ScaleErrors& scale) {
   UncertainPose expected{
       inverse(world_from_body(map, chain.begin)) * world_from_body(map, chain.end),
       chain.begin_from_end.covariance};
+  if (!is_without_depth(map)) return expected;
+  const StretchedPath path = stretched(map, chain, log_scale);
   expected.a_from_b.translation.setZero();
   for (const Eigen::Vector3d& step : path.steps) expected.a_from_b.translation += step;
   core::Vector6d lengths = core::Vector6d::Ones();

@@ -44,13 +44,13 @@ class ClimbingChain {
   OdometryChain chain_;
 };
 
-// Where the end is in the beginning, in lengths of the beginning, if its scale is known to have
-// crept by exp(log_scale) on the way, spread evenly over the keyframes but for what it creeps at
-// random (a Brownian bridge), in a map that has the path in one scale. How fast it creeps evenly
-// need not be known. The covariance is that of the chain, as much longer as the path, and of the
-// scale.
-geometry::UncertainPose with_crept_scale(const scene::MapVersion& map, const OdometryChain& chain,
-                                         double log_scale, const ScaleErrors& scale);
+// Where the end is in the beginning, by the map, with the covariance of the chain. Without depth in
+// lengths of the beginning, if the scale is known to have crept by exp(log_scale) on the way:
+// evenly over the keyframes but for what it creeps at random (a Brownian bridge), and not between
+// the ends of a loop that has been closed. How fast it creeps evenly need not be known. The
+// covariance is that of the chain, as much longer as the path, and of the scale.
+geometry::UncertainPose expected_end(const scene::MapVersion& map, const OdometryChain& chain,
+                                     double log_scale, const ScaleErrors& scale);
 
 // How far a claimed pose is from a known one [m in `begin`; rad].
 core::Vector6d difference(const core::Rigid3& known, const core::Rigid3& claimed);

@@ -278,6 +278,20 @@ TEST(Decide, WhereAnotherPlaceExplainsTheViewAboutAsWellNobodyCanTell) {
             std::string::npos);
 }
 
+TEST(Decide, AnotherPlaceThatGoesWithOverruledLoopsDoesNotCount) {
+  core::Evidence evidence = good_evidence();
+  evidence.other_place = core::OtherPlaceEvidence{
+      .frame = core::FrameId(20), .num_inliers = 2 * evidence.geometry->num_inliers};
+  EXPECT_EQ(stage(evidence, {}), "rival");
+  evidence.rival = core::RivalEvidence{.frame = core::FrameId(20),
+                                       .mahalanobis_squared = 31.0,
+                                       .first_loop = core::CandidateId(7),
+                                       .gain = Config{}.min_rival_gain + 0.1};
+  const auto verdict = decide(candidate(100, 0), evidence, {}, {});
+  ASSERT_TRUE(core::is_loop(verdict));
+  EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));
+}
+
 TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
   core::Evidence evidence = good_evidence();
   evidence.rival = core::RivalEvidence{
