@@ -158,20 +158,32 @@ std::optional<core::Candidate> LoopDetector::beside(const core::Candidate& candi
                          .is_foretold = true};
 }
 
+namespace {
+
+// Of the other loops among the claims the one at another place that most agrees with.
+std::optional<core::OtherPlaceEvidence> other_place_of(const core::LedgerRow& row,
+                                                       const std::vector<core::LedgerRow>& claims,
+                                                       const MeasureOtherPlace& measure) {
+  std::optional<core::OtherPlaceEvidence> best;
+  for (const core::LedgerRow& other : claims) {
+    if (!core::is_loop(other.verdict) || other.candidate.id == row.candidate.id) continue;
+    auto found = measure(row, other);
+    if (!found) continue;
+    found->num_inliers = core::evidence_of(other.verdict).geometry->num_inliers;
+    if (!best || found->num_inliers > best->num_inliers) best = found;
+  }
+  return best;
+}
+
+}  // namespace
+
 void LoopDetector::hold_against_each_other(const MapKnowledge& map,
                                            std::vector<core::LedgerRow>& rows) const {
   const std::vector<core::LedgerRow> claims = rows;  // each as it is for itself
   for (core::LedgerRow& row : rows) {
     if (!core::is_loop(row.verdict)) continue;
     core::Evidence evidence = core::evidence_of(row.verdict);
-    for (const core::LedgerRow& other : claims) {
-      if (!core::is_loop(other.verdict) || other.candidate.id == row.candidate.id) continue;
-      auto found = map.measure_other_place(row, other);
-      if (!found) continue;
-      found->num_inliers = core::evidence_of(other.verdict).geometry->num_inliers;
-      if (!evidence.other_place || found->num_inliers > evidence.other_place->num_inliers)
-        evidence.other_place = found;
-    }
+    evidence.other_place = other_place_of(row, claims, map.measure_other_place);
     if (evidence.other_place)
       row.verdict = verify::decide(row.candidate, evidence, history_, settings_.verify);
   }
