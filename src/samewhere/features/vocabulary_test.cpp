@@ -1,6 +1,7 @@
 #include <cstring>
 
 #include <gmock/gmock.h>
+#include <opencv2/core.hpp>
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
