@@ -79,7 +79,8 @@ std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_st
 }
 
 ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {
-  const auto images = std::make_shared<const std::vector<TowerImage>>(pairs::read_tower(folder));
+  const auto images = std::make_shared<const std::vector<TowerImage>>(
+      pairs::read_tower({.folder = folder, .floors = {}}));
   std::vector<int> all_queries;
   for (std::size_t i = 0; i < images->size(); ++i) {
     if (!(*images)[i].is_gallery) all_queries.push_back(static_cast<int>(i));

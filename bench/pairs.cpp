@@ -15,6 +15,7 @@
 #include <opencv2/core.hpp>
 
 #include "program.hpp"
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/evaluate/separation.hpp>
@@ -35,6 +36,7 @@ struct Options {
   PairRule rule;
   std::vector<std::string> networks = {"pairs.onnx"};
   std::string csv_file;
+  std::string each_file;
 };
 
 // Of the two pictures, laid onto each other without their light, where both see; 0 if either shows
@@ -121,29 +123,53 @@ std::string time_of(std::size_t score, const Times& times) {
                      core::median(times.judging_ms).value_or(0.0));
 }
 
-void measure(const std::string& source, const Options& options, std::vector<Judge>& judges,
-             Table& table) {
-  const LabelledPairs labelled = pairs::labelled_pairs(source, options.rule);
+std::vector<std::string> names_of(const std::vector<Judge>& judges) {
   std::vector<std::string> names(kScores.begin(), kScores.end());
   for (const Judge& judge : judges) names.push_back(judge.name);
+  return names;
+}
+
+std::vector<std::string> row_of(const std::string& source, const LabelledPair& pair,
+                                const LabelledPairs& labelled, const Scores& scores) {
+  const auto frame_of = [&](int view) {
+    return fmt::format("{}", labelled.views[static_cast<std::size_t>(view)].view.frame.index());
+  };
+  std::vector<std::string> row = {source, frame_of(pair.query), frame_of(pair.match),
+                                  pair.is_same ? "same" : "different"};
+  for (const double score : scores) row.push_back(fmt::format("{:.6g}", score));
+  return row;
+}
+
+struct Tables {
+  Table separation;
+  Table each;
+};
+
+void measure(const std::string& source, const Options& options, std::vector<Judge>& judges,
+             Tables& tables) {
+  const LabelledPairs labelled = pairs::labelled_pairs(source, options.rule);
+  const std::vector<std::string> names = names_of(judges);
   std::vector<std::vector<double>> of_true(names.size());
   std::vector<std::vector<double>> of_wrong(names.size());
   Times times;
   for (const LabelledPair& pair : labelled.pairs) {
     const Scores scores = scores_of(pair, labelled, judges, times);
+    tables.each.rows.push_back(row_of(source, pair, labelled, scores));
     for (std::size_t i = 0; i < scores.size(); ++i)
       (pair.is_same ? of_true : of_wrong)[i].push_back(scores[i]);
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    table.rows.push_back(row_of(source, names[i], evaluate::separation_of(of_true[i], of_wrong[i]),
-                                time_of(i, times)));
+    tables.separation.rows.push_back(row_of(
+        source, names[i], evaluate::separation_of(of_true[i], of_wrong[i]), time_of(i, times)));
   }
 }
 
 void measure_all(const Options& options) {
-  Table table{.header = {"source", "score", "true", "wrong", "AUC", "kept at 1 % wrong",
-                         "kept at 0.1 % wrong", "processor ms a pair, median"},
-              .rows = {}};
+  Tables tables{
+      .separation = {.header = {"source", "score", "true", "wrong", "AUC", "kept at 1 % wrong",
+                                "kept at 0.1 % wrong", "processor ms a pair, median"},
+                     .rows = {}},
+      .each = {.header = {"source", "query", "match", "truth"}, .rows = {}}};
   cv::setNumThreads(1);
   std::vector<Judge> judges;
   for (const std::string& file : options.networks) {
@@ -151,8 +177,10 @@ void measure_all(const Options& options) {
     judges.push_back({options.networks.size() == 1 ? "network" : "network " + name,
                       verify::PairNetwork("--network", file)});
   }
-  for (const std::string& source : options.sources) measure(source, options, judges, table);
-  publish(table, options.csv_file);
+  for (const std::string& name : names_of(judges)) tables.each.header.push_back(name);
+  for (const std::string& source : options.sources) measure(source, options, judges, tables);
+  publish(tables.separation, options.csv_file);
+  if (!options.each_file.empty()) core::write_file(options.each_file, as_csv(tables.each));
 }
 
 std::function<void()> set_up(CLI::App& app) {
@@ -162,10 +190,17 @@ std::function<void()> set_up(CLI::App& app) {
       "Pairs of views that one geometry explains: how well do scores tell one "
       "place\n"
       "from two that look alike?");
-  app.add_option("SOURCE", options->sources,
-                 "recordings with place truth, the folder of IE Tower, or twin:PRESET?similarity=S")
+  app.add_option(
+         "SOURCE", options->sources,
+         "recordings with place truth, the folder of IE Tower (FOLDER?floors=floor3,floor5: some "
+         "of its floors), or twin:PRESET?similarity=S")
       ->required();
-  app.add_option("--step", options->rule.step, "every so many frames is a view; IE Tower: a query")
+  app.add_option("--step", options->rule.step,
+                 "every so many frames is a view; of IE Tower each is")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--query-step", options->rule.query_step,
+                 "of IE Tower: every so many views is asked")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--window", options->rule.window_frames,
@@ -179,6 +214,8 @@ std::function<void()> set_up(CLI::App& app) {
   app.add_option("--network", options->networks, "ONNX files that judge a registered pair")
       ->capture_default_str();
   app.add_option("--csv", options->csv_file, "write the table to this file, too");
+  app.add_option("--each", options->each_file,
+                 "write each pair's frames and scores to this file (CSV): to look at the errors");
   return [options] { measure_all(*options); };
 }
 

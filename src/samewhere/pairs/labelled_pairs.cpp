@@ -123,8 +123,9 @@ KnownViews views_of_recording(const pipeline::Config& config, const PairRule& ru
 }
 
 KnownViews views_of_tower(pipeline::Config config, const PairRule& rule) {
-  const std::vector<TowerImage> images = read_tower(config.source);
-  config.source = (std::filesystem::path(config.source) / "walk.txt").string();
+  const TowerSource tower = tower_source(config.source);
+  const std::vector<TowerImage> images = read_tower(tower);
+  config.source = (tower.folder / "walk.txt").string();
   const auto source = pipeline::open_source(config);
   core::Progress progress("looking at " + config.source, static_cast<int>(images.size()));
   Viewer viewer(config, rule);
@@ -133,8 +134,9 @@ KnownViews views_of_tower(pipeline::Config config, const PairRule& rule) {
   for (int index = 0; const auto frame = source->next(); ++index) {
     core::stop_if_interrupted();
     progress.update(index);
-    if (!images[static_cast<std::size_t>(index)].is_gallery) continue;
-    if (known.views.size() % static_cast<std::size_t>(rule.step) == 0)
+    const TowerImage& image = images[static_cast<std::size_t>(index)];
+    if (!image.is_gallery || !tower.has(image.floor)) continue;
+    if (known.views.size() % static_cast<std::size_t>(rule.query_step) == 0)
       known.queries.push_back(static_cast<int>(known.views.size()));
     viewer.add(*frame, known);
     frame_of.push_back(index);

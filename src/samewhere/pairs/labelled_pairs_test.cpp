@@ -50,7 +50,7 @@ int num_of(const LabelledPairs& labelled, int query, bool is_same) {
 TEST(LabelledPairs, OfATowerNeighboursInAClipAreTrueAndFloorsThatLookAlikeAreWrong) {
   const input::TestFolder folder;
   make_tower(folder);
-  const LabelledPairs labelled = labelled_pairs(folder.root().string(), {.step = 1});
+  const LabelledPairs labelled = labelled_pairs(folder.root().string(), {.query_step = 1});
   EXPECT_EQ(labelled.views.size(), 9U);  // the query of the data set is left out
   EXPECT_EQ(num_of(labelled, 0, true), 2);
   EXPECT_EQ(num_of(labelled, 1, true), 3);
@@ -63,9 +63,23 @@ TEST(LabelledPairs, OfATowerNeighboursInAClipAreTrueAndFloorsThatLookAlikeAreWro
 TEST(LabelledPairs, OfATowerEveryStepthViewIsAQuery) {
   const input::TestFolder folder;
   make_tower(folder);
-  const LabelledPairs labelled = labelled_pairs(folder.root().string(), {.step = 4});
+  const LabelledPairs labelled = labelled_pairs(folder.root().string(), {.query_step = 4});
   EXPECT_EQ(labelled.views.size(), 9U);
   for (const LabelledPair& pair : labelled.pairs) EXPECT_EQ(pair.query % 4, 0);
+}
+
+TEST(LabelledPairs, OfATowerSomeFloorsCanBeTaken) {
+  const input::TestFolder folder;
+  make_tower(folder);
+  const auto floors = [&](const std::string& names) {
+    return labelled_pairs(folder.root().string() + "?floors=" + names, {.query_step = 1});
+  };
+  const LabelledPairs one = floors("floor2");
+  EXPECT_EQ(one.views.size(), 3U);
+  EXPECT_EQ(num_of(one, 0, true), 2);
+  EXPECT_EQ(num_of(one, 0, false), 0);
+  EXPECT_EQ(floors("floor1,floor2").views.size(), 7U);
+  EXPECT_THROW(floors("floor1,floor7"), core::InputError);
 }
 
 TEST(LabelledPairs, PairsOfFewerMatchesAreLeftOut) {

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <map>
+#include <sstream>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -27,14 +30,35 @@ std::map<std::string, bool> read_splits(const std::filesystem::path& csv) {
   return is_gallery;
 }
 
-}  // namespace
+constexpr std::string_view kFloors = "?floors=";
 
-bool is_tower(const std::filesystem::path& source) {
-  return std::filesystem::exists(source / "dataset.csv") &&
-         std::filesystem::exists(source / "walk.txt");
+void require_floors(const TowerSource& source, const std::vector<TowerImage>& images) {
+  for (const std::string& floor : source.floors) {
+    if (std::ranges::find(images, floor, &TowerImage::floor) != images.end()) continue;
+    throw core::InputError(fmt::format("{}: no image of floor '{}', expected a floor of walk.txt",
+                                       source.folder.string(), floor));
+  }
 }
 
-std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
+}  // namespace
+
+TowerSource tower_source(const std::string& source) {
+  const std::size_t end = source.find(kFloors);
+  if (end == std::string::npos) return {.folder = source, .floors = {}};
+  TowerSource tower{.folder = source.substr(0, end), .floors = {}};
+  std::istringstream floors(source.substr(end + kFloors.size()));
+  for (std::string floor; std::getline(floors, floor, ',');) tower.floors.insert(floor);
+  return tower;
+}
+
+bool is_tower(const std::string& source) {
+  const std::filesystem::path folder = tower_source(source).folder;
+  return std::filesystem::exists(folder / "dataset.csv") &&
+         std::filesystem::exists(folder / "walk.txt");
+}
+
+std::vector<TowerImage> read_tower(const TowerSource& source) {
+  const std::filesystem::path& folder = source.folder;
   const std::map<std::string, bool> is_gallery = read_splits(folder / "dataset.csv");
   std::vector<TowerImage> images;
   for (const core::TextLine& line : core::read_text_lines(folder / "walk.txt")) {
@@ -45,6 +69,7 @@ std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
     }
     images.push_back({line.words[1], line.words[2], split->second});
   }
+  require_floors(source, images);
   return images;
 }
 

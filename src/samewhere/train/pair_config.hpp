@@ -14,7 +14,9 @@ struct PairConfig {
   int threads = 1;
   int channels = 16;
   double hidden_pictures = 0.25;
+  double hidden_features = 0.0;
   int step = 10;
+  int query_step = 10;
   int window_frames = 150;
   int min_matches = 20;
   double other_cameras = 0.7;
@@ -39,8 +41,16 @@ inline void visit_fields(PairConfig& config, core::FieldVisitor& visit) {
                  "to pictures",
          .min = 0.0,
          .max = 1.0});
+  visit(
+      "hidden_features", config.hidden_features,
+      {.help = "in training, up to this share of the cells of both views shows no features: which "
+               "share agrees is to decide, not how many there are",
+       .min = 0.0,
+       .max = 1.0});
   visit("step", config.step,
-        {.help = "every so many frames of a source is a view; of IE Tower: a query", .min = 1});
+        {.help = "every so many frames of a source is a view; of IE Tower each is", .min = 1});
+  visit("query_step", config.query_step,
+        {.help = "of IE Tower: every so many views is asked for pairs", .min = 1});
   visit("window_frames", config.window_frames,
         {.help = "frames no further apart are no pair", .min = 0});
   visit("other_cameras", config.other_cameras,

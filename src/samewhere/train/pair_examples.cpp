@@ -110,6 +110,16 @@ void miss(double share, core::Random& random, cv::Mat& plane) {
   }
 }
 
+// Nothing of what either view shows in some cells of the planes is known.
+void hide_features(double share, core::Random& random, Planes& planes) {
+  const std::uint64_t seed = random.next();
+  for (const PairPlane features :
+       {PairPlane::kAgree, PairPlane::kOnlyQueryShows, PairPlane::kOnlyMatchShows}) {
+    core::Random same_cells(seed);
+    miss(share, same_cells, at(planes, features));
+  }
+}
+
 void swap_views(Planes& planes) {
   std::swap(at(planes, PairPlane::kQuery), at(planes, PairPlane::kMatch));
   std::swap(at(planes, PairPlane::kOnlyQueryShows), at(planes, PairPlane::kOnlyMatchShows));
@@ -161,6 +171,7 @@ cv::Mat distorted_pair(const cv::Mat& stack, const PairConfig& config, core::Ran
   const double missed_ratio = random.uniform(0.0, kMaxMissedDifferences);
   miss(missed_ratio, random, at(planes, PairPlane::kOnlyQueryShows));
   miss(missed_ratio, random, at(planes, PairPlane::kOnlyMatchShows));
+  hide_features(random.uniform(0.0, config.hidden_features), random, planes);
   cv::Mat distorted;
   cv::vconcat(planes.data(), planes.size(), distorted);
   return distorted;

@@ -50,6 +50,26 @@ TEST(DistortedPair, PicturesCanBeHiddenAndFeaturesStay) {
   EXPECT_GT(cv::sum(plane(pair, PairPlane::kOnlyQueryShows))[0], 50.0);
 }
 
+// Of dots everywhere, the same cells are gone from all three planes.
+TEST(DistortedPair, CellsWithoutFeaturesAreWithoutThemInAllPlanes) {
+  cv::Mat planes = cv::Mat::ones(verify::kNumPairPlanes * kPairSide_px, kPairSide_px, CV_32F);
+  PairConfig config = test_pair_config();
+  const auto num_empty = [&](double hidden_features) {
+    config.hidden_features = hidden_features;
+    int num = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      core::Random random(seed);
+      const cv::Mat pair = distorted_pair(planes, config, random);
+      num += cv::countNonZero(plane(pair, PairPlane::kAgree) +
+                                  plane(pair, PairPlane::kOnlyQueryShows) +
+                                  plane(pair, PairPlane::kOnlyMatchShows) ==
+                              0.0F);
+    }
+    return num;
+  };
+  EXPECT_GT(num_empty(0.9), num_empty(0.0) + 10 * kPairSide_px * kPairSide_px / 4);
+}
+
 // What only one view shows goes with its picture.
 TEST(DistortedPair, EitherViewMayBeFirst) {
   cv::Mat planes = cv::Mat::zeros(verify::kNumPairPlanes * kPairSide_px, kPairSide_px, CV_32F);

@@ -62,6 +62,7 @@ struct PairsOfSource {
 PairsOfSource pairs_of_source(const std::string& name, const PairConfig& config) {
   const pairs::LabelledPairs labelled =
       pairs::labelled_pairs(name, {.step = config.step,
+                                   .query_step = config.query_step,
                                    .window_frames = config.window_frames,
                                    .min_matches = config.min_matches,
                                    .other_cameras = config.other_cameras});

@@ -98,6 +98,24 @@ std::string make_tower(const input::TestFolder& folder, const std::string& name)
   return folder.at(name).string();
 }
 
+TEST(PairSet, AFloorIsNotLearntFromAndValidatedWith) {
+  const input::TestFolder folder;
+  const std::string tower = make_tower(folder, "tower");
+  PairConfig config = test_pair_config();
+  config.query_step = 1;
+  const auto read = [&](const std::string& learnt, const std::string& held_back) {
+    const std::vector<std::string> sources = {learnt};
+    const std::vector<std::string> validate = {held_back};
+    return complaint([&] { read_pairs(sources, validate, config); });
+  };
+  EXPECT_THAT(read(tower + "?floors=floor1", tower + "?floors=floor1,floor2"),
+              HasSubstr("is learnt from, too"));
+  EXPECT_THAT(read(tower, tower + "?floors=floor2"), HasSubstr("is learnt from, too"));
+  // other floors are other places; that one floor alone has no look-alikes is another complaint
+  EXPECT_THAT(read(tower + "?floors=floor1", tower + "?floors=floor2"),
+              HasSubstr("0 of two that look alike"));
+}
+
 TEST(PairSet, IsTheSameWhateverTheThreads) {
   const input::TestFolder folder;
   std::vector<std::string> learnt;
@@ -105,7 +123,7 @@ TEST(PairSet, IsTheSameWhateverTheThreads) {
     learnt.push_back(make_tower(folder, name));
   const std::vector<std::string> held_back = {make_tower(folder, "f")};
   PairConfig config = test_pair_config();
-  config.step = 1;
+  config.query_step = 1;
   const PairSet one = read_pairs(learnt, held_back, config);
   config.threads = 3;
   const PairSet three = read_pairs(learnt, held_back, config);
