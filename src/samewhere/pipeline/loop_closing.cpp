@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <samewhere/pipeline/loop_closing.hpp>
@@ -31,7 +33,8 @@ class Places {
   Places(const scene::MapVersion& map, const KeyframeOf& keyframe_of)
       : map_(map), keyframe_of_(keyframe_of), is_without_depth_(scene::is_without_depth(map)) {}
 
-  MapKnowledge knowledge(const Config& config) const {
+  // For the view of this frame.
+  MapKnowledge knowledge(core::FrameId frame, const Config& config) const {
     MapKnowledge knowledge;
     const verify::ScaleErrors scale = scale_errors(config);
     knowledge.measure_odometry = [=, this, &config](const core::Candidate& candidate,
@@ -48,6 +51,10 @@ class Places {
                                                        const core::LedgerRow& other) {
       return other_place(row, other, scale, config);
     };
+    knowledge.is_connected = [this, neighbours = neighbours(frame, config)](core::FrameId match) {
+      return neighbours.contains(holder(match));
+    };
+    knowledge.are_one_place = one_place(config);
     if (is_without_depth_)
       knowledge.view_of = [this](core::FrameId frame) {
         return with_known_depths(map_, at(frame));
@@ -64,6 +71,24 @@ class Places {
   }
 
  private:
+  core::KeyframeId holder(core::FrameId frame) const {
+    return holder_of(map_, keyframe_of_.at(frame)).keyframe;
+  }
+
+  std::set<core::KeyframeId> neighbours(core::FrameId frame, const Config& config) const {
+    return neighbours_of(map_, holder(frame), config.map.min_shared);
+  }
+
+  // Keyframes that share landmarks show one place. Those of one view are looked up once.
+  AreOnePlace one_place(const Config& config) const {
+    auto known = std::make_shared<std::map<core::FrameId, std::set<core::KeyframeId>>>();
+    return [this, &config, known](core::FrameId a, core::FrameId b) {
+      auto found = known->find(a);
+      if (found == known->end()) found = known->emplace(a, neighbours(a, config)).first;
+      return found->second.contains(holder(b));
+    };
+  }
+
   scene::LoopEdge edge_of(const core::LedgerRow& row, const core::LoopClosure& loop) const {
     return {
         at(row.candidate.query), at(row.candidate.match), rigid_part(*loop.match_from_query),
@@ -78,11 +103,7 @@ class Places {
     const auto pose = report::match_from_query_of(row.verdict);
     const auto other_pose = report::match_from_query_of(other.verdict);
     if (!pose || !other_pose) return std::nullopt;
-    const core::KeyframeId there = holder_of(map_, at(other.candidate.match)).keyframe;
-    if (neighbours_of(map_, holder_of(map_, at(row.candidate.match)).keyframe,
-                      config.map.min_shared)
-            .contains(there))
-      return std::nullopt;
+    if (one_place(config)(row.candidate.match, other.candidate.match)) return std::nullopt;
     return verify::measure_other_place(map_, claim_of(row.candidate, *pose),
                                        claim_of(other.candidate, *other_pose), scale,
                                        config.verify);
@@ -162,13 +183,10 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
     return answer;
   }
   const Places places(map, keyframe_of_);
-  const std::set<core::KeyframeId> neighbours =
-      neighbours_of(map, question.keyframe, config_.map.min_shared);
-  const auto is_connected = [&](core::FrameId match) {
-    return neighbours.contains(holder_of(map, keyframe_of_.at(match)).keyframe);
-  };
-  answer.rows =
-      detector_.look(question.image, view, places.knowledge(config_), is_connected, timings_);
+  const MapKnowledge knowledge = places.knowledge(view.frame, config_);
+  if (was_withdrawn(map)) answer.rows = detector_.think_again(knowledge);
+  for (auto& row : detector_.look(question.image, view, knowledge, timings_))
+    answer.rows.push_back(std::move(row));
   for (const auto& row : answer.rows) {
     const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
     if (loop != nullptr && loop->match_from_query)
@@ -176,6 +194,13 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   }
   answer.descriptor = detector_.descriptor(detector_.num_descriptors() - 1);
   return answer;
+}
+
+bool LoopClosing::was_withdrawn(const scene::MapVersion& map) {
+  std::set<core::CandidateId> believed;
+  for (const auto& loop : map.loops) believed.insert(loop.cause);
+  const std::set<core::CandidateId> before = std::exchange(believed_, std::move(believed));
+  return !std::ranges::includes(believed_, before);
 }
 
 LoopAnswer LoopClosing::answer(const FindPlace& question) {

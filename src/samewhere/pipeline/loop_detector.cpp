@@ -33,6 +33,7 @@ verify::MeasureSettings settings_of_lost(const Config& config, bool is_without_d
 
 LoopDetector::LoopDetector(const Config& config)
     : describer_(describe::make_describer(config.describe)),
+      retrieve_(config.retrieve),
       retriever_(config.retrieve, static_cast<std::uint64_t>(config.seed)),
       settings_(settings_of(config)),
       lost_settings_(settings_of_lost(config, false)),
@@ -42,9 +43,7 @@ LoopDetector::LoopDetector(const Config& config)
       window_frames_(static_cast<std::uint64_t>(config.retrieve.window_frames)) {}
 
 std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const features::View& view,
-                                                const MapKnowledge& map,
-                                                const IsConnected& is_connected,
-                                                core::Timings& timings) {
+                                                const MapKnowledge& map, core::Timings& timings) {
   core::Descriptor descriptor;
   {
     const core::ScopedTimer timer(timings, "describe");
@@ -53,11 +52,49 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
   std::vector<core::Candidate> candidates;
   {
     const core::ScopedTimer timer(timings, "retrieve");
-    candidates = retrieve::compare(descriptor, search(descriptor, view));
+    candidates = candidates_for(descriptor, view, map);
   }
-  std::erase_if(candidates, [&](const core::Candidate& c) { return is_connected(c.match); });
   const core::ScopedTimer timer(timings, "verify");
   return judge(descriptor, candidates, view, map);
+}
+
+namespace {
+
+// Of candidates, most similar first, so many of different places, each with so many of its views.
+std::vector<core::Candidate> best_of_places(const std::vector<core::Candidate>& candidates,
+                                            const AreOnePlace& are_one_place,
+                                            const retrieve::Config& config) {
+  std::vector<core::Candidate> firsts;  // of each place
+  std::vector<int> num_views;
+  std::vector<core::Candidate> best;
+  for (const core::Candidate& next : candidates) {
+    const auto place = std::ranges::find_if(firsts, [&](const core::Candidate& first) {
+      return are_one_place(first.match, next.match);
+    });
+    const auto index = static_cast<std::size_t>(place - firsts.begin());
+    if (place == firsts.end()) {
+      if (std::ssize(firsts) >= config.num_candidates) continue;
+      firsts.push_back(next);
+      num_views.push_back(0);
+    }
+    if (num_views[index]++ < config.views_of_place) best.push_back(next);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<core::Candidate> LoopDetector::candidates_for(const core::Descriptor& descriptor,
+                                                          const features::View& view,
+                                                          const MapKnowledge& map) {
+  const bool has_places = map.are_one_place && retrieve_.shortlist > 0;
+  auto candidates =
+      retrieve::compare(descriptor, has_places ? retriever_.shortlist(descriptor, orb_of(view))
+                                               : retriever_.search(descriptor, orb_of(view)));
+  retriever_.add(descriptor, orb_of(view));
+  if (map.is_connected)
+    std::erase_if(candidates, [&](const core::Candidate& c) { return map.is_connected(c.match); });
+  return has_places ? best_of_places(candidates, map.are_one_place, retrieve_) : candidates;
 }
 
 std::vector<core::LedgerRow> LoopDetector::recognise(const cv::Mat& image,
@@ -106,6 +143,7 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
     wait_or_pause(rows.back());
   }
   if (map.measure_other_place) hold_against_each_other(map, rows);
+  note_doubts(rows);
   look_around(descriptor, view, map, rows);
   if (!may_wait) return rows;
   for (const core::Candidate& candidate : foretold(descriptor)) {
@@ -187,6 +225,38 @@ void LoopDetector::hold_against_each_other(const MapKnowledge& map,
     if (evidence.other_place)
       row.verdict = verify::decide(row.candidate, evidence, history_, settings_.verify);
   }
+}
+
+void LoopDetector::note_doubts(const std::vector<core::LedgerRow>& rows) {
+  ++num_judged_;
+  std::erase_if(in_doubt_, [&](const InDoubt& waiter) {
+    return num_judged_ - waiter.since > settings_.verify.wait_views;
+  });
+  for (const core::LedgerRow& row : rows) {
+    const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
+    if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kRival)
+      in_doubt_.push_back({row.candidate, ambiguous->evidence.other_place, num_judged_});
+  }
+}
+
+std::vector<core::LedgerRow> LoopDetector::think_again(const MapKnowledge& map) {
+  std::vector<core::LedgerRow> rows;
+  std::vector<InDoubt> undecided;
+  for (const InDoubt& waiter : in_doubt_) {
+    const core::Candidate& candidate = waiter.candidate;
+    core::Evidence evidence =
+        core::evidence_of(verdict_on(candidate, views_.at(candidate.query), map, settings_));
+    evidence.other_place = waiter.other_place;
+    core::LedgerRow row{candidate, verify::decide(candidate, evidence, history_, settings_.verify)};
+    if (std::holds_alternative<core::Ambiguous>(row.verdict)) {
+      undecided.push_back(waiter);
+      continue;
+    }
+    wait_or_pause(row);
+    rows.push_back(std::move(row));
+  }
+  in_doubt_ = std::move(undecided);
+  return rows;
 }
 
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {

@@ -39,6 +39,9 @@ using MeasureOtherPlace = std::function<std::optional<core::OtherPlaceEvidence>(
 // them would say nothing new.
 using IsConnected = std::function<bool(core::FrameId match)>;
 
+// Whether the map knows that two views which it holds show one place.
+using AreOnePlace = std::function<bool(core::FrameId a, core::FrameId b)>;
+
 // A view that was looked at, with the depths that the map has worked out for it by now.
 using ViewOf = std::function<features::View(core::FrameId frame)>;
 
@@ -47,6 +50,8 @@ struct MapKnowledge {
   MeasureOdometry measure_odometry;
   MeasureRival measure_rival = {};
   MeasureOtherPlace measure_other_place = {};
+  IsConnected is_connected = {};   // with the view that is looked at
+  AreOnePlace are_one_place = {};  // none: every view is a place of its own
   ViewOf view_of = {};  // of a camera without depth: so its views have some, each in its own scale
 };
 
@@ -56,16 +61,20 @@ class LoopDetector {
   explicit LoopDetector(const Config& config);
 
   // The judged candidates of this view, most similar first; the view is remembered for later ones.
-  // Views that are connected with it are no candidates. Frames ascend. The steps below, timed as
-  // "describe", "retrieve" and "verify".
+  // Views that are connected with it are no candidates, and of a place that the map knows only the
+  // best are. Frames ascend. The steps below, timed as "describe", "retrieve" and "verify".
   std::vector<core::LedgerRow> look(const cv::Mat& image, const features::View& view,
-                                    const MapKnowledge& map, const IsConnected& is_connected,
-                                    core::Timings& timings);
+                                    const MapKnowledge& map, core::Timings& timings);
 
   // The same for a view whose place nobody knows: any remembered view may match it, however young;
   // odometry says nothing, and the view itself is not remembered.
   std::vector<core::LedgerRow> recognise(const cv::Mat& image, const features::View& view,
                                          core::Timings& timings);
+
+  // Loops that the map believed are none any more: further verdicts on those who were ambiguous
+  // because of them, measured on the map as it is now. Who stays ambiguous is not named; nobody
+  // waits for more than verify.wait_views views.
+  std::vector<core::LedgerRow> think_again(const MapKnowledge& map);
 
   // A view of an earlier session. Frames ascend.
   void remember(const core::Descriptor& descriptor, const features::View& view);
@@ -90,7 +99,17 @@ class LoopDetector {
   std::vector<core::LedgerRow> settle_all() { return waiting_.settle_all(); }
 
  private:
+  // Of whom two places explain the view.
+  struct InDoubt {
+    core::Candidate candidate;
+    std::optional<core::OtherPlaceEvidence> other_place;
+    int since = 0;  // num_judged_
+  };
+
+  std::vector<core::Candidate> candidates_for(const core::Descriptor& descriptor,
+                                              const features::View& view, const MapKnowledge& map);
   void wait_or_pause(const core::LedgerRow& row);
+  void note_doubts(const std::vector<core::LedgerRow>& rows);
   // Loops of one view that show two places: the verdict on each may change.
   void hold_against_each_other(const MapKnowledge& map, std::vector<core::LedgerRow>& rows) const;
   // Beside the best candidate's match: who shows more of the same?
@@ -112,13 +131,16 @@ class LoopDetector {
 
   std::unique_ptr<describe::Describer> describer_;  // of describe()
 
-  retrieve::Retriever retriever_;  // of search()
+  retrieve::Config retrieve_;  // from here on of search()
+  retrieve::Retriever retriever_;
 
   verify::MeasureSettings settings_;       // from here on of judge()
   verify::MeasureSettings lost_settings_;  // of recognise()
   verify::MeasureSettings lost_settings_without_depth_;
   verify::History history_;
   verify::Waiting waiting_;
+  std::vector<InDoubt> in_doubt_;
+  int num_judged_ = 0;                                            // views
   std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where more than search is asked
   NumberedViews numbered_;
   std::uint64_t window_frames_;

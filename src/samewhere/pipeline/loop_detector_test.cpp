@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <samewhere/features/test_world.hpp>
 #include <samewhere/pipeline/loop_detector.hpp>
@@ -76,14 +77,63 @@ TEST(LoopDetector, WithoutDepthWhoIsLostMayMatchWhatIsNotClearEnoughForALoop) {
   const auto places = detector.recognise(picture, later, timings);
   ASSERT_EQ(places.size(), 1U);
   EXPECT_GT(num_matches(places[0]), 100);
-  const auto is_connected = [](core::FrameId /*match*/) { return false; };
   const auto no_odometry = [](const core::Candidate& /*candidate*/,
                               const core::Sim3& /*match_from_query*/) {
     return std::optional<core::OdometryEvidence>();
   };
-  const auto loops = detector.look(picture, later, {no_odometry}, is_connected, timings);
+  const auto loops = detector.look(picture, later, {no_odometry}, timings);
   ASSERT_EQ(loops.size(), 1U);
   EXPECT_EQ(num_matches(loops[0]), 0);
+}
+
+// Thirty views of three places, ten each; those of the first look most like the view that is looked
+// at, those of the last least. The candidates' matches.
+std::vector<std::uint64_t> matches_of_places(const retrieve::Config& retrieve,
+                                             const IsConnected& is_connected) {
+  Config config;
+  config.retrieve = retrieve;
+  config.retrieve.window_frames = 0;
+  LoopDetector detector(config);
+  cv::RNG random(5);
+  cv::Mat picture(480, 640, CV_8UC1);
+  random.fill(picture, cv::RNG::UNIFORM, 0, 256);
+  cv::resize(picture(cv::Rect(0, 0, 40, 30)), picture, picture.size(), 0, 0, cv::INTER_CUBIC);
+  cv::Mat noise(picture.size(), CV_8UC1);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
+  cv::resize(noise(cv::Rect(0, 0, 40, 30)), noise, noise.size(), 0, 0, cv::INTER_CUBIC);
+  for (std::uint64_t frame = 0; frame < 30; ++frame) {
+    cv::Mat seen;
+    const double share = 0.02 * static_cast<double>(frame);
+    cv::addWeighted(picture, 1.0 - share, noise, share, 0.0, seen);
+    detector.remember(detector.describe(core::FrameId(frame), seen), blank_view(frame));
+  }
+  MapKnowledge map;
+  map.measure_odometry = [](const auto&, const auto&) { return std::nullopt; };
+  map.is_connected = is_connected;
+  map.are_one_place = [](core::FrameId a, core::FrameId b) {
+    return a.index() / 10 == b.index() / 10;
+  };
+  core::Timings timings;
+  std::vector<std::uint64_t> matches;
+  for (const auto& row : detector.look(picture, blank_view(40), map, timings))
+    matches.push_back(row.candidate.match.index());
+  return matches;
+}
+
+TEST(LoopDetector, CandidatesAreTheBestViewsOfDifferentPlaces) {
+  const auto nobody = [](core::FrameId /*match*/) { return false; };
+  EXPECT_EQ(matches_of_places({.shortlist = 30}, nobody), (std::vector<std::uint64_t>{0, 10, 20}));
+  EXPECT_EQ(matches_of_places({.num_candidates = 2, .shortlist = 30, .views_of_place = 2}, nobody),
+            (std::vector<std::uint64_t>{0, 1, 10, 11}));
+  EXPECT_EQ(matches_of_places({.shortlist = 0}, nobody), (std::vector<std::uint64_t>{0, 1, 2}));
+}
+
+// However many of those that look most alike the map holds together with the view already.
+TEST(LoopDetector, ViewsThatAreConnectedDoNotTakeThePlaceOfOthers) {
+  const auto first_place = [](core::FrameId match) { return match.index() < 10; };
+  EXPECT_EQ(matches_of_places({.shortlist = 30}, first_place),
+            (std::vector<std::uint64_t>{10, 20}));
+  EXPECT_TRUE(matches_of_places({.shortlist = 0}, first_place).empty());
 }
 
 // Two views of the map that show the same things, and that the map knows to be two places; a view
@@ -124,6 +174,80 @@ class TwoPlaces : public testing::Test {
 TEST_F(TwoPlaces, ThatShowAViewAsWellAreAmbiguous) {
   EXPECT_EQ(verdicts(judged(0.0, true)), (std::vector<std::string_view>{"AMBIGUOUS", "AMBIGUOUS"}));
   EXPECT_EQ(verdicts(judged(0.0, false)), (std::vector<std::string_view>{"LOOP", "LOOP"}));
+}
+
+// A view that shows a place, where earlier loops say that the camera is elsewhere.
+class InDoubt : public testing::Test {
+ protected:
+  InDoubt() : detector_(some_config()) { map_.measure_odometry = odometry_that_fits; }
+
+  static Config some_config() {
+    Config config;
+    config.retrieve.window_frames = 40;
+    return config;
+  }
+
+  static std::optional<core::OdometryEvidence> odometry_that_fits(const core::Candidate&,
+                                                                  const core::Sim3&) {
+    return core::OdometryEvidence{};
+  }
+
+  // What the loops of the map say of where the camera is.
+  MapKnowledge map_with(double rival_chi_square) const {
+    MapKnowledge map = map_;
+    map.measure_rival = [=](const auto&, const auto&) {
+      return std::optional(core::RivalEvidence{.mahalanobis_squared = rival_chi_square});
+    };
+    return map;
+  }
+
+  // A view that shows what frame 0 shows, if it is asked.
+  std::vector<core::LedgerRow> judge(std::uint64_t frame, const MapKnowledge& map, bool is_asked) {
+    const features::View view =
+        features::test_view(world_, static_cast<int>(frame), core::Rigid3{});
+    const core::Descriptor descriptor{.frame = core::FrameId(frame), .unit = {0.6F, 0.0F, 0.8F}};
+    const auto asked =
+        is_asked ? std::vector{candidate(frame, 0, 0.9)} : std::vector<core::Candidate>();
+    return detector_.judge(descriptor, asked, view, map);
+  }
+
+  features::TestWorld world_ = features::test_world(3);
+  MapKnowledge map_;
+  LoopDetector detector_;
+};
+
+TEST_F(InDoubt, WhoIsAmbiguousIsALoopOnceTheLoopsThatSpokeAgainstItAreGone) {
+  judge(0, map_, false);
+  const auto rows = judge(90, map_with(100.0), true);
+  ASSERT_EQ(core::name_of(rows.at(0).verdict), "AMBIGUOUS");
+  EXPECT_TRUE(detector_.think_again(map_with(90.0)).empty());
+  const auto later = detector_.think_again(map_with(1.0));
+  ASSERT_EQ(later.size(), 1U);
+  EXPECT_EQ(core::name_of(later[0].verdict), "LOOP");
+  EXPECT_EQ(later[0].candidate.id, rows[0].candidate.id);
+  EXPECT_TRUE(detector_.think_again(map_with(1.0)).empty());
+}
+
+TEST_F(InDoubt, NobodyWaitsForEver) {
+  judge(0, map_, false);
+  judge(90, map_with(100.0), true);
+  for (int i = 0; i < verify::Config{}.wait_views + 1; ++i)
+    judge(100 + static_cast<std::uint64_t>(i), map_, false);
+  EXPECT_TRUE(detector_.think_again(map_with(1.0)).empty());
+}
+
+// That no loop speaks against either says nothing of which of both it is.
+TEST_F(InDoubt, OfTwoPlacesNeitherIsALoopBecauseLoopsAreGone) {
+  map_.measure_other_place = [](const core::LedgerRow&, const core::LedgerRow& other) {
+    return std::optional(core::OtherPlaceEvidence{.frame = other.candidate.match});
+  };
+  judge(0, map_, false);
+  judge(1, map_, false);
+  const core::Descriptor descriptor{.frame = core::FrameId(90), .unit = {0.6F, 0.0F, 0.8F}};
+  const auto rows = detector_.judge(descriptor, {candidate(90, 0, 0.9), candidate(90, 1, 0.8)},
+                                    features::test_view(world_, 90, core::Rigid3{}), map_with(1.0));
+  ASSERT_EQ(core::name_of(rows.at(0).verdict), "AMBIGUOUS");
+  EXPECT_TRUE(detector_.think_again(map_with(1.0)).empty());
 }
 
 TEST_F(TwoPlaces, OfWhichOneShowsFarMoreAreThatOne) {

@@ -17,6 +17,8 @@ struct Config {
   double window_s = 5.0;
   int window_frames = -1;
   int place_frames = 0;
+  int shortlist = 30;
+  int views_of_place = 1;
   int lost_candidates = 8;
   int lost_place_frames = 30;
 
@@ -70,6 +72,13 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("place_frames", config.place_frames,
         {.help = "of views closer than this many frames only the best is a candidate; 0: all are",
          .min = 0});
+  visit("shortlist", config.shortlist,
+        {.help = "with a map, so many views are grouped into places by what they share of it, and "
+                 "num_candidates of them are views of different places; 0: not grouped",
+         .min = 0,
+         .max = 10000});
+  visit("views_of_place", config.views_of_place,
+        {.help = "shortlist: so many candidates of one place at most", .min = 1, .max = 1000});
   visit("lost_candidates", config.lost_candidates,
         {.help = "num_candidates for a view that is lost", .min = 1, .max = 1000});
   visit("lost_place_frames", config.lost_place_frames,

@@ -56,6 +56,17 @@ std::vector<FoundView> Retriever::search(const core::Descriptor& descriptor,
   return found_by(descriptor, features, num_allowed, config_);
 }
 
+std::vector<FoundView> Retriever::shortlist(const core::Descriptor& descriptor,
+                                            const cv::Mat& features) const {
+  check(descriptor);
+  Config more = config_;
+  more.num_candidates = std::max(config_.num_candidates, config_.shortlist);
+  if (config_.word_candidates > 0)
+    more.word_candidates = std::max(config_.word_candidates, config_.shortlist);
+  const int num_allowed = store_.num_older(descriptor.frame, config_.window_frames);
+  return found_by(descriptor, features, num_allowed, more);
+}
+
 std::vector<FoundView> Retriever::search_places(const core::Descriptor& descriptor,
                                                 const cv::Mat& features) const {
   check(descriptor);
