@@ -55,10 +55,13 @@ cv::Mat as_bgr(const cv::Mat& image) {
   return bgr;
 }
 
+bool is_whole_tower(const std::string& name) {
+  return pairs::is_tower(name) && pairs::tower_source(name).floors.empty();
+}
+
 SourceViews view(const std::string& name, MobileNet& mobilenet) {
   pipeline::Config config = pipeline::profile("default");
-  config.source =
-      pairs::is_tower(name) ? (std::filesystem::path(name) / "walk.txt").string() : name;
+  config.source = is_whole_tower(name) ? (std::filesystem::path(name) / "walk.txt").string() : name;
   const auto source = pipeline::open_source(config);
   const auto describer = describe::make_describer(config.describe);
   core::Progress progress("looking at " + name, source->info().num_frames);
@@ -147,8 +150,8 @@ std::string median_of(std::vector<int> best) {
 void measure(const std::string& name, const Options& options, MobileNet& mobilenet, Table& table) {
   const SourceViews views = view(name, mobilenet);
   const std::vector<ImpostorRule> rules =
-      pairs::is_tower(name) ? std::vector{tower_rule(name, options.num_tower_queries)}
-                            : rules_of_truth(views.known, options.query_step);
+      is_whole_tower(name) ? std::vector{tower_rule(name, options.num_tower_queries)}
+                           : rules_of_truth(views.known, options.query_step);
   InlierCounts counts(views.orb);
   for (const ImpostorRule& rule : rules) {
     for (const auto& [method, vectors] :

@@ -80,6 +80,7 @@ TEST(LabelledPairs, OfATowerSomeFloorsCanBeTaken) {
   EXPECT_EQ(num_of(one, 0, false), 0);
   EXPECT_EQ(floors("floor1,floor2").views.size(), 7U);
   EXPECT_THROW(floors("floor1,floor7"), core::InputError);
+  EXPECT_THROW(floors(""), core::InputError);
 }
 
 TEST(LabelledPairs, PairsOfFewerMatchesAreLeftOut) {

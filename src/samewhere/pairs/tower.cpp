@@ -48,6 +48,9 @@ TowerSource tower_source(const std::string& source) {
   TowerSource tower{.folder = source.substr(0, end), .floors = {}};
   std::istringstream floors(source.substr(end + kFloors.size()));
   for (std::string floor; std::getline(floors, floor, ',');) tower.floors.insert(floor);
+  if (tower.floors.empty())
+    throw core::InputError(
+        fmt::format("{}: no floor, expected FOLDER?floors=NAME,NAME...", source));
   return tower;
 }
 

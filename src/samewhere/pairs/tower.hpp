@@ -16,6 +16,7 @@ struct TowerSource {
   bool has(const std::string& floor) const { return floors.empty() || floors.contains(floor); }
 };
 
+// Throws InputError if floors are asked for and none is named.
 TowerSource tower_source(const std::string& source);
 
 // Whether this is IE Tower: a folder with a dataset.csv beside a walk.txt.

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -183,10 +182,8 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
     return answer;
   }
   const Places places(map, keyframe_of_);
-  const MapKnowledge knowledge = places.knowledge(view.frame, config_);
-  if (was_withdrawn(map)) answer.rows = detector_.think_again(knowledge);
-  for (auto& row : detector_.look(question.image, view, knowledge, timings_))
-    answer.rows.push_back(std::move(row));
+  answer.rows =
+      detector_.look(question.image, view, places.knowledge(view.frame, config_), timings_);
   for (const auto& row : answer.rows) {
     const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
     if (loop != nullptr && loop->match_from_query)
@@ -194,13 +191,6 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   }
   answer.descriptor = detector_.descriptor(detector_.num_descriptors() - 1);
   return answer;
-}
-
-bool LoopClosing::was_withdrawn(const scene::MapVersion& map) {
-  std::set<core::CandidateId> believed;
-  for (const auto& loop : map.loops) believed.insert(loop.cause);
-  const std::set<core::CandidateId> before = std::exchange(believed_, std::move(believed));
-  return !std::ranges::includes(believed_, before);
 }
 
 LoopAnswer LoopClosing::answer(const FindPlace& question) {

@@ -35,8 +35,6 @@ class LoopClosing {
 
  private:
   LoopAnswer answer(const FindLoops& question);
-  // Whether a loop of the map before is none any more; notes those of this one.
-  bool was_withdrawn(const scene::MapVersion& map);
   // Which places of the whole map may this be? The judge of loops says what it recognises.
   LoopAnswer answer(const FindPlace& question);
 
@@ -44,8 +42,7 @@ class LoopClosing {
   core::Timings timings_;
   LoopDetector detector_;
   core::Ledger ledger_;
-  KeyframeOf keyframe_of_;                // of views that are remembered
-  std::set<core::CandidateId> believed_;  // loops of the map that was asked about last
+  KeyframeOf keyframe_of_;  // of views that are remembered
 };
 
 }  // namespace samewhere::pipeline

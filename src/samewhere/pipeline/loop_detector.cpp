@@ -60,20 +60,25 @@ std::vector<core::LedgerRow> LoopDetector::look(const cv::Mat& image, const feat
 
 namespace {
 
-// Of candidates, most similar first, so many of different places, each with so many of its views.
+// Of candidates, most similar first, so many of different places, each with so many of its views:
+// those found by looks, and so many more found by their features.
 std::vector<core::Candidate> best_of_places(const std::vector<core::Candidate>& candidates,
                                             const AreOnePlace& are_one_place,
                                             const retrieve::Config& config) {
   std::vector<core::Candidate> firsts;  // of each place
   std::vector<int> num_views;
   std::vector<core::Candidate> best;
+  int num_by_looks = config.num_candidates;
+  int num_by_features = config.word_candidates;
   for (const core::Candidate& next : candidates) {
     const auto place = std::ranges::find_if(firsts, [&](const core::Candidate& first) {
       return are_one_place(first.match, next.match);
     });
     const auto index = static_cast<std::size_t>(place - firsts.begin());
     if (place == firsts.end()) {
-      if (std::ssize(firsts) >= config.num_candidates) continue;
+      int& num_left = next.is_by_features ? num_by_features : num_by_looks;
+      if (num_left == 0) continue;
+      --num_left;
       firsts.push_back(next);
       num_views.push_back(0);
     }
@@ -143,7 +148,6 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
     wait_or_pause(rows.back());
   }
   if (map.measure_other_place) hold_against_each_other(map, rows);
-  note_doubts(rows);
   look_around(descriptor, view, map, rows);
   if (!may_wait) return rows;
   for (const core::Candidate& candidate : foretold(descriptor)) {
@@ -225,38 +229,6 @@ void LoopDetector::hold_against_each_other(const MapKnowledge& map,
     if (evidence.other_place)
       row.verdict = verify::decide(row.candidate, evidence, history_, settings_.verify);
   }
-}
-
-void LoopDetector::note_doubts(const std::vector<core::LedgerRow>& rows) {
-  ++num_judged_;
-  std::erase_if(in_doubt_, [&](const InDoubt& waiter) {
-    return num_judged_ - waiter.since > settings_.verify.wait_views;
-  });
-  for (const core::LedgerRow& row : rows) {
-    const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
-    if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kRival)
-      in_doubt_.push_back({row.candidate, ambiguous->evidence.other_place, num_judged_});
-  }
-}
-
-std::vector<core::LedgerRow> LoopDetector::think_again(const MapKnowledge& map) {
-  std::vector<core::LedgerRow> rows;
-  std::vector<InDoubt> undecided;
-  for (const InDoubt& waiter : in_doubt_) {
-    const core::Candidate& candidate = waiter.candidate;
-    core::Evidence evidence =
-        core::evidence_of(verdict_on(candidate, views_.at(candidate.query), map, settings_));
-    evidence.other_place = waiter.other_place;
-    core::LedgerRow row{candidate, verify::decide(candidate, evidence, history_, settings_.verify)};
-    if (std::holds_alternative<core::Ambiguous>(row.verdict)) {
-      undecided.push_back(waiter);
-      continue;
-    }
-    wait_or_pause(row);
-    rows.push_back(std::move(row));
-  }
-  in_doubt_ = std::move(undecided);
-  return rows;
 }
 
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {

@@ -71,11 +71,6 @@ class LoopDetector {
   std::vector<core::LedgerRow> recognise(const cv::Mat& image, const features::View& view,
                                          core::Timings& timings);
 
-  // Loops that the map believed are none any more: further verdicts on those who were ambiguous
-  // because of them, measured on the map as it is now. Who stays ambiguous is not named; nobody
-  // waits for more than verify.wait_views views.
-  std::vector<core::LedgerRow> think_again(const MapKnowledge& map);
-
   // A view of an earlier session. Frames ascend.
   void remember(const core::Descriptor& descriptor, const features::View& view);
 
@@ -99,17 +94,9 @@ class LoopDetector {
   std::vector<core::LedgerRow> settle_all() { return waiting_.settle_all(); }
 
  private:
-  // Of whom two places explain the view.
-  struct InDoubt {
-    core::Candidate candidate;
-    std::optional<core::OtherPlaceEvidence> other_place;
-    int since = 0;  // num_judged_
-  };
-
   std::vector<core::Candidate> candidates_for(const core::Descriptor& descriptor,
                                               const features::View& view, const MapKnowledge& map);
   void wait_or_pause(const core::LedgerRow& row);
-  void note_doubts(const std::vector<core::LedgerRow>& rows);
   // Loops of one view that show two places: the verdict on each may change.
   void hold_against_each_other(const MapKnowledge& map, std::vector<core::LedgerRow>& rows) const;
   // Beside the best candidate's match: who shows more of the same?
@@ -139,8 +126,6 @@ class LoopDetector {
   verify::MeasureSettings lost_settings_without_depth_;
   verify::History history_;
   verify::Waiting waiting_;
-  std::vector<InDoubt> in_doubt_;
-  int num_judged_ = 0;                                            // views
   std::set<std::pair<core::FrameId, core::FrameId>> was_judged_;  // where more than search is asked
   NumberedViews numbered_;
   std::uint64_t window_frames_;

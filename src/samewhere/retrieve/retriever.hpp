@@ -53,8 +53,8 @@ class Retriever {
   // rather than one place many times: no window, lost_candidates of either kind, lost_place_frames.
   std::vector<FoundView> search_places(const core::Descriptor& descriptor,
                                        const cv::Mat& features = {}) const;
-  // For a map that knows which views show one place: config.shortlist views at least, of either
-  // kind that search() asks for, those of search() among them.
+  // For a map that knows which views show one place: so many more of either kind that search() asks
+  // for, config.shortlist at most.
   std::vector<FoundView> shortlist(const core::Descriptor& descriptor,
                                    const cv::Mat& features = {}) const;
   // The search and then the exact similarity.
