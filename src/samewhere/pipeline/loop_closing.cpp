@@ -32,8 +32,8 @@ class Places {
   Places(const scene::MapVersion& map, const KeyframeOf& keyframe_of)
       : map_(map), keyframe_of_(keyframe_of), is_without_depth_(scene::is_without_depth(map)) {}
 
-  // For the view of this frame.
-  MapKnowledge knowledge(core::FrameId frame, const Config& config) const {
+  // For the view that is looked at.
+  MapKnowledge knowledge(core::FrameId query, const Config& config) const {
     MapKnowledge knowledge;
     const verify::ScaleErrors scale = scale_errors(config);
     knowledge.measure_odometry = [=, this, &config](const core::Candidate& candidate,
@@ -50,7 +50,7 @@ class Places {
                                                        const core::LedgerRow& other) {
       return other_place(row, other, scale, config);
     };
-    knowledge.is_connected = [this, neighbours = neighbours(frame, config)](core::FrameId match) {
+    knowledge.is_connected = [this, neighbours = neighbours(query, config)](core::FrameId match) {
       return neighbours.contains(holder(match));
     };
     knowledge.are_one_place = one_place(config);
