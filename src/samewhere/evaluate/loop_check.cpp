@@ -55,13 +55,6 @@ CheckedLoop check(const AcceptedLoop& loop, const core::Truth& truth, double sca
   return checked;
 }
 
-bool is_closed(const core::FrameSpan& revisit, const std::vector<CheckedLoop>& loops) {
-  return std::any_of(loops.begin(), loops.end(), [&](const CheckedLoop& checked) {
-    return checked.truth == LoopTruth::kRight && revisit.first <= checked.loop.query &&
-           checked.loop.query <= revisit.last;
-  });
-}
-
 }  // namespace
 
 LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth& truth,
@@ -82,6 +75,13 @@ LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth&
     result.num_closed += is_closed(revisit, result.loops) ? 1 : 0;
   }
   return result;
+}
+
+bool is_closed(const core::FrameSpan& revisit, const std::vector<CheckedLoop>& loops) {
+  return std::any_of(loops.begin(), loops.end(), [&](const CheckedLoop& checked) {
+    return checked.truth == LoopTruth::kRight && revisit.first <= checked.loop.query &&
+           checked.loop.query <= revisit.last;
+  });
 }
 
 }  // namespace samewhere::evaluate

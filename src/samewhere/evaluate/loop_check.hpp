@@ -46,4 +46,7 @@ struct LoopCheck {
 LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth& truth,
                       double scale = 1.0);
 
+// Whether one of them that is right has its query in the revisit.
+bool is_closed(const core::FrameSpan& revisit, const std::vector<CheckedLoop>& loops);
+
 }  // namespace samewhere::evaluate

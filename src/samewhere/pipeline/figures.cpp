@@ -65,6 +65,35 @@ std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
   return figures;
 }
 
+evaluate::AcceptedLoop loop_of(const core::LedgerRow& row, const StampOf& stamp_of) {
+  evaluate::AcceptedLoop loop;
+  loop.query = static_cast<int>(row.candidate.query.index());
+  loop.match = static_cast<int>(row.candidate.match.index());
+  loop.query_stamp_s = stamp_of.at(row.candidate.query);
+  loop.match_stamp_s = stamp_of.at(row.candidate.match);
+  const auto& match_from_query = std::get<core::LoopClosure>(row.verdict).match_from_query;
+  if (match_from_query) loop.match_from_query = rigid_part(*match_from_query);
+  return loop;
+}
+
+// How far it would move the query from where the trajectory has it.
+std::optional<double> distance_m(const evaluate::AcceptedLoop& loop,
+                                 const core::Trajectory& trajectory) {
+  const auto world_from_query = evaluate::truth_at(trajectory, loop.query_stamp_s);
+  const auto world_from_match = evaluate::truth_at(trajectory, loop.match_stamp_s);
+  if (!loop.match_from_query || !world_from_query || !world_from_match) return std::nullopt;
+  const core::Rigid3 placed = *world_from_match * *loop.match_from_query;
+  return (placed.translation - world_from_query->translation).norm();
+}
+
+// Whether an earlier visit was joined by who was found again in this one.
+bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& found_again) {
+  return std::any_of(found_again.loops.begin(), found_again.loops.end(), [&](const auto& checked) {
+    return checked.truth == evaluate::LoopTruth::kRight && checked.loop.match < revisit.first &&
+           revisit.first <= checked.loop.query && checked.loop.query <= revisit.last;
+  });
+}
+
 Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
   return {
       fmt::format("squared error of {} over its belief",
@@ -93,16 +122,25 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
       findings.matching.push_back({static_cast<int>(row->candidate.query.index()),
                                    static_cast<int>(row->candidate.match.index())});
     }
-    const auto* closure = std::get_if<core::LoopClosure>(&row->verdict);
-    if (closure == nullptr) continue;
-    evaluate::AcceptedLoop loop;
-    loop.query = static_cast<int>(row->candidate.query.index());
-    loop.match = static_cast<int>(row->candidate.match.index());
-    loop.query_stamp_s = stamp_of.at(row->candidate.query);
-    loop.match_stamp_s = stamp_of.at(row->candidate.match);
-    if (closure->match_from_query) loop.match_from_query = rigid_part(*closure->match_from_query);
-    findings.loops.push_back(loop);
+    if (core::is_loop(row->verdict)) findings.loops.push_back(loop_of(*row, stamp_of));
   }
+}
+
+void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
+                     const std::set<core::FrameId>& resumed, SlamFindings& findings) {
+  std::map<core::FrameId, std::pair<double, evaluate::AcceptedLoop>> nearest;
+  for (const auto* row : report::final_rows(ledger)) {
+    const core::Candidate& candidate = row->candidate;
+    const bool is_told = candidate.is_lost && core::is_loop(row->verdict) &&
+                         candidate.match.session() == candidate.query.session();
+    if (!is_told || !resumed.contains(candidate.query)) continue;
+    const evaluate::AcceptedLoop loop = loop_of(*row, stamp_of);
+    const auto distance = distance_m(loop, findings.trajectory);
+    if (!distance) continue;
+    const auto [it, is_first] = nearest.try_emplace(candidate.query, *distance, loop);
+    if (!is_first && *distance < it->second.first) it->second = {*distance, loop};
+  }
+  for (const auto& [frame, found] : nearest) findings.found_again.push_back(found.second);
 }
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
@@ -112,8 +150,13 @@ SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
   findings.odometry = record.odometry;
   findings.is_scale_free = is_scale_free;
   StampOf stamp_of;
-  for (const auto& frame : record.frames) stamp_of[frame.pose.frame] = frame.pose.stamp_s;
+  std::set<core::FrameId> resumed;
+  for (const auto& frame : record.frames) {
+    stamp_of[frame.pose.frame] = frame.pose.stamp_s;
+    if (frame.pose.status == core::FrameStatus::kResumed) resumed.insert(frame.pose.frame);
+  }
   add_loops(record.ledger, stamp_of, findings);
+  add_found_again(record.ledger, stamp_of, resumed, findings);
   return findings;
 }
 
@@ -136,6 +179,12 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.num_of_known_map = findings.num_of_known_map;
   evaluation.num_known_places = findings.num_known_places;
   evaluation.loops = evaluate::check_loops(findings.loops, truth, scale);
+  evaluation.found_again = evaluate::check_loops(findings.found_again, truth, scale);
+  for (const auto& revisit : truth.revisits.value_or(std::vector<core::FrameSpan>{})) {
+    const bool is_joined = evaluate::is_closed(revisit, evaluation.loops.loops) ||
+                           is_rejoined(revisit, evaluation.found_again);
+    evaluation.num_rejoined += is_joined ? 1 : 0;
+  }
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
   evaluation.num_withdrawn = findings.num_withdrawn;
   if (!truth.impostors.empty()) {
@@ -209,6 +258,15 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   if (loops.num_revisits > 0) {
     figures.push_back(
         {"revisits closed", fmt::format("{} of {}", loops.num_closed, loops.num_revisits)});
+  }
+  if (const auto& again = evaluation.found_again; !again.loops.empty()) {
+    figures.push_back(
+        {"lost and found again: right / wrong / unknown",
+         fmt::format("{} / {} / {}", again.num_right, again.num_wrong, again.num_unknown)});
+    if (loops.num_revisits > 0) {
+      figures.push_back({"revisits closed, or found again in",
+                         fmt::format("{} of {}", evaluation.num_rejoined, loops.num_revisits)});
+    }
   }
   if (evaluation.num_refused_by_graph + evaluation.num_withdrawn > 0) {
     figures.push_back(

@@ -1,5 +1,7 @@
+#include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,22 +22,40 @@
 namespace samewhere::pipeline {
 namespace {
 
-// Stamps of all frames, by position: the second column of frames.csv.
-std::vector<double> read_stamps(const std::filesystem::path& path) {
-  const std::string text = core::read_file(path);
+// What frames.csv says of all frames, by position.
+struct Frames {
   std::vector<double> stamps_s;
+  std::set<core::FrameId> resumed;
+};
+
+// The fourth column, told from the end: the third, a name, may hold commas.
+std::string_view status_of(std::string_view record) {
+  constexpr int kColumnsBehind = 10;
+  std::size_t end = record.size();
+  for (int i = 0; i < kColumnsBehind && end != std::string_view::npos; ++i)
+    end = end == 0 ? std::string_view::npos : record.rfind(',', end - 1);
+  if (end == std::string_view::npos) return {};
+  const std::string_view before = record.substr(0, end);
+  return before.substr(before.rfind(',') + 1);
+}
+
+Frames read_frames(const std::filesystem::path& path) {
+  const std::string text = core::read_file(path);
+  Frames frames;
   bool is_heading = true;
   for (const std::string_view record : core::csv_records(text)) {
     if (std::exchange(is_heading, false)) continue;
     const auto first = record.find(',');
+    if (status_of(record) == name_of(core::FrameStatus::kResumed))
+      frames.resumed.insert(core::FrameId(frames.stamps_s.size()));
     try {
-      stamps_s.push_back(std::stod(std::string(record.substr(first + 1))));
+      frames.stamps_s.push_back(std::stod(std::string(record.substr(first + 1))));
     } catch (const std::exception&) {
-      throw core::InputError(
-          fmt::format("{}, line {}: expected index,stamp,...", path.string(), stamps_s.size() + 2));
+      throw core::InputError(fmt::format("{}, line {}: expected index,stamp,...", path.string(),
+                                         frames.stamps_s.size() + 2));
     }
   }
-  return stamps_s;
+  return frames;
 }
 
 std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
@@ -57,16 +77,19 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
 }
 
 SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_scale_free) {
-  const std::vector<double> stamps_s = read_stamps(folder / "frames.csv");
+  const Frames frames = read_frames(folder / "frames.csv");
   SlamFindings findings;
-  findings.num_frames = static_cast<int>(stamps_s.size());
+  findings.num_frames = static_cast<int>(frames.stamps_s.size());
   findings.trajectory = core::read_tum(folder / "trajectory.tum");
   findings.odometry = core::read_tum(folder / "odometry.tum");
   findings.is_scale_free = is_scale_free;
   StampOf stamp_of;
-  for (std::size_t i = 0; i < stamps_s.size(); ++i) stamp_of[core::FrameId(i)] = stamps_s[i];
+  for (std::size_t i = 0; i < frames.stamps_s.size(); ++i)
+    stamp_of[core::FrameId(i)] = frames.stamps_s[i];
   try {
-    add_loops(ledger_of_run(folder), stamp_of, findings);
+    const core::Ledger ledger = ledger_of_run(folder);
+    add_loops(ledger, stamp_of, findings);
+    add_found_again(ledger, stamp_of, frames.resumed, findings);
   } catch (const std::out_of_range&) {
     throw core::InputError((folder / "loops.json").string() +
                            ": a loop names a frame that frames.csv does not have");
