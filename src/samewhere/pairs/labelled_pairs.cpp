@@ -17,7 +17,6 @@
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/features/orb.hpp>
 #include <samewhere/pairs/labelled_pairs.hpp>
-#include <samewhere/pairs/made_places.hpp>
 #include <samewhere/pairs/most_alike.hpp>
 #include <samewhere/pairs/other_camera.hpp>
 #include <samewhere/pairs/tower.hpp>
@@ -30,7 +29,6 @@ namespace {
 
 constexpr int kShortlist = 10;
 constexpr int kNeighbourFrames = 2;
-constexpr int kRoomPhotos = 30;  // photos no further apart may show one room
 
 enum class Kind { kNeither, kSame, kWrong };
 
@@ -155,67 +153,9 @@ KnownViews views_of_tower(pipeline::Config config, const PairRule& rule) {
   return known;
 }
 
-std::vector<cv::Mat> read_photos(const PhotoSource& photos, core::Source& source,
-                                 core::Frame& any) {
-  std::vector<cv::Mat> pictures;
-  for (int index = 0; auto frame = source.next(); ++index) {
-    core::stop_if_interrupted();
-    if (index < photos.first || index > photos.last) continue;
-    pictures.push_back(core::as_grey(frame->images.front()).clone());
-    any = *std::move(frame);
-  }
-  if (static_cast<int>(pictures.size()) > 2 * kRoomPhotos) return pictures;
-  throw core::InputError(fmt::format("{}: {} photos, expected more than {}", photos.folder.string(),
-                                     pictures.size(), 2 * kRoomPhotos));
-}
-
-// Of photo i and three that are not its neighbours.
-Ingredients ingredients_of(const std::vector<cv::Mat>& photos, std::size_t i,
-                           core::Random& random) {
-  const auto another = [&] {
-    const auto far = photos.size() - 2 * kRoomPhotos;
-    return photos[(i + kRoomPhotos + random.index(far)) % photos.size()];
-  };
-  const cv::Mat own = another();
-  const cv::Mat other = another();
-  return {.shared = photos[i], .own = own, .other = other, .passing = another()};
-}
-
-// Four views of each photo: two of the place that is made of it, two of its look-alike.
-KnownViews views_of_photos(pipeline::Config config, const PairRule& rule) {
-  Viewer viewer(config, rule);
-  const PhotoSource photos = photo_source(config.source);
-  const std::uint64_t seed = core::checksum(config.source);
-  config.source = photos.folder.string();
-  core::Frame frame;
-  const auto source = pipeline::open_source(config);
-  const std::vector<cv::Mat> pictures = read_photos(photos, *source, frame);
-  frame.depth_m.reset();
-  KnownViews known;
-  core::Progress progress("looking at " + config.source, static_cast<int>(pictures.size()));
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    core::stop_if_interrupted();
-    core::Random random(core::seed_of(seed, "made", i));
-    for (const cv::Mat& view : made_views(ingredients_of(pictures, i, random), random)) {
-      frame.id = core::FrameId(known.views.size());
-      frame.images = {view};
-      viewer.add(frame, known);
-    }
-    progress.update(static_cast<int>(i) + 1);
-  }
-  ask_every_view(known);
-  known.kind = [](int query, int match) {
-    const bool is_one_photo = query / kNumMadeViews == match / kNumMadeViews;
-    if (!is_one_photo || query <= match) return Kind::kNeither;
-    return query / 2 == match / 2 ? Kind::kSame : Kind::kWrong;
-  };
-  return known;
-}
-
 KnownViews known_views(const std::string& source, const PairRule& rule) {
   pipeline::Config config = pipeline::profile("default");
   config.source = source;
-  if (is_photos(source)) return views_of_photos(config, rule);
   if (is_tower(source)) return views_of_tower(config, rule);
   if (twin::is_twin_spec(source)) return views_of_twin(config, rule);
   return views_of_recording(config, rule);

@@ -32,9 +32,8 @@ struct PairRule {
 
 // Of a twin building or a recording with place truth: the true pairs are of the same place, the
 // wrong ones of different places (pr-v2). Of IE Tower or some of its floors: its gallery images;
-// the true pairs are neighbours up to 2 s apart in the same clip, the wrong ones of two floors.
-// Of photographs ("photos:FOLDER"): of each, a place and a look-alike are made (made_places.hpp).
-// Of each kind the 10 whose descriptors (HOG) are most like the query's are measured. Which views
+// the true pairs are neighbours up to 2 s apart in the same clip, the wrong ones of two floors. Of
+// each kind the 10 whose descriptors (HOG) are most like the query's are measured. Which views
 // another camera took, and how, source and frame decide. Throws InputError if the source cannot be
 // read or says nothing about places.
 LabelledPairs labelled_pairs(const std::string& source, const PairRule& rule);

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/pairs/made_places.hpp>
 #include <samewhere/pairs/tower.hpp>
 #include <samewhere/train/held_back.hpp>
 #include <samewhere/twin/spec.hpp>
@@ -18,21 +17,7 @@ bool share_floors(const pairs::TowerSource& a, const pairs::TowerSource& b) {
   return std::ranges::any_of(a.floors, [&](const std::string& floor) { return b.has(floor); });
 }
 
-bool is_one_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code ignored;  // what is not there is found when it is read
-  return a == b || std::filesystem::equivalent(a, b, ignored);
-}
-
-bool show_the_same_photos(const std::string& a, const std::string& b) {
-  const pairs::PhotoSource first = pairs::photo_source(a);
-  const pairs::PhotoSource second = pairs::photo_source(b);
-  return is_one_folder(first.folder, second.folder) && first.first <= second.last &&
-         second.first <= first.last;
-}
-
 bool show_the_same(const std::string& a, const std::string& b) {
-  if (pairs::is_photos(a) != pairs::is_photos(b)) return false;
-  if (pairs::is_photos(a)) return show_the_same_photos(a, b);
   if (twin::is_twin_spec(a) != twin::is_twin_spec(b)) return false;
   if (twin::is_twin_spec(a)) {
     const twin::Spec first = twin::parse_spec(a);
@@ -41,7 +26,10 @@ bool show_the_same(const std::string& a, const std::string& b) {
   }
   const pairs::TowerSource first = pairs::tower_source(a);
   const pairs::TowerSource second = pairs::tower_source(b);
-  return is_one_folder(first.folder, second.folder) && share_floors(first, second);
+  std::error_code ignored;  // what is not there is found when it is read
+  const bool is_one_folder = first.folder == second.folder ||
+                             std::filesystem::equivalent(first.folder, second.folder, ignored);
+  return is_one_folder && share_floors(first, second);
 }
 
 }  // namespace

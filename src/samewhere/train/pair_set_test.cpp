@@ -13,7 +13,6 @@ namespace {
 
 using input::complaint;
 using testing::HasSubstr;
-using testing::Not;
 
 TEST(PackedPair, ComesBackWithinAStepAndZeroAndOneAsTheyWere) {
   cv::Mat planes = test_planes(1, false);
@@ -115,20 +114,6 @@ TEST(PairSet, AFloorIsNotLearntFromAndValidatedWith) {
   // other floors are other places; that one floor alone has no look-alikes is another complaint
   EXPECT_THAT(read(tower + "?floors=floor1", tower + "?floors=floor2"),
               HasSubstr("0 of two that look alike"));
-}
-
-TEST(PairSet, APhotoIsNotLearntFromAndValidatedWith) {
-  const auto read = [](const std::string& learnt, const std::string& held_back) {
-    const std::vector<std::string> sources = {learnt};
-    const std::vector<std::string> validate = {held_back};
-    return complaint([&] { read_pairs(sources, validate, test_pair_config()); });
-  };
-  EXPECT_THAT(read("photos:nowhere?to=20", "photos:nowhere?from=20"),
-              HasSubstr("is learnt from, too"));
-  EXPECT_THAT(read("photos:nowhere?from=9", "photos:nowhere"), HasSubstr("is learnt from, too"));
-  EXPECT_THAT(read("photos:nowhere?to=20", "photos:nowhere?from=21"),
-              Not(HasSubstr("is learnt from, too")))
-      << "others are other photos; that there are none is another complaint";
 }
 
 TEST(PairSet, IsTheSameWhateverTheThreads) {
