@@ -22,6 +22,24 @@ Eigen::Vector2d distort(const PinholeRadtan& c, const Eigen::Vector2d& ideal) {
           y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y};
 }
 
+// Whether radial distortion has turned back on the way out to here: what lies so far outside would
+// appear in the picture again. It goes outwards as long as the derivative of r * radial, a
+// polynomial in r2, is positive from the middle on.
+bool is_folded(const PinholeRadtan& c, double r2) {
+  const auto slope = [&](double s) {
+    return 1.0 + s * (3.0 * c.k1 + s * (5.0 * c.k2 + s * 7.0 * c.k3));
+  };
+  const auto turns_at = [&](double s) { return s > 0.0 && s < r2 && slope(s) <= 0.0; };
+  if (slope(r2) <= 0.0) return true;
+  // least on the way where 3 k1 + 10 k2 s + 21 k3 s^2 is 0
+  if (c.k3 == 0.0) return c.k2 != 0.0 && turns_at(-0.3 * c.k1 / c.k2);
+  const double discriminant = 25.0 * c.k2 * c.k2 - 63.0 * c.k1 * c.k3;
+  if (discriminant < 0.0) return false;
+  const double root = std::sqrt(discriminant);
+  return turns_at((-5.0 * c.k2 - root) / (21.0 * c.k3)) ||
+         turns_at((-5.0 * c.k2 + root) / (21.0 * c.k3));
+}
+
 Eigen::Matrix2d distort_jacobian(const PinholeRadtan& c, const Eigen::Vector2d& ideal) {
   const double x = ideal.x();
   const double y = ideal.y();
@@ -69,7 +87,9 @@ std::optional<Eigen::Vector2d> project(const core::Camera& camera,
                                        const Eigen::Vector3d& point_in_camera) {
   if (point_in_camera.z() < kMinDepth_m) return std::nullopt;
   const PinholeRadtan& c = pinhole(camera);
-  return to_pixel(c, distort(c, point_in_camera.hnormalized()));
+  const Eigen::Vector2d ideal = point_in_camera.hnormalized();
+  if (is_folded(c, ideal.squaredNorm())) return std::nullopt;
+  return to_pixel(c, distort(c, ideal));
 }
 
 std::optional<Eigen::Vector2d> project_undistorted(const core::Camera& camera,

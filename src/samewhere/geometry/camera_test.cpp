@@ -47,6 +47,35 @@ TEST(Camera, WhatIsBehindIsNotSeen) {
   EXPECT_FALSE(project_undistorted(strong_camera(), {0.0, 0.0, -1.0}));
 }
 
+// Outwards from the middle pixels go outwards, until there are none any more: for lenses that turn
+// back (barrel, moustache), and none for one that never does.
+TEST(Camera, WhatDistortionWouldFoldBackIsNotSeen) {
+  const auto camera_with = [](double k1, double k2, double k3) {
+    core::PinholeRadtan camera{640, 480, 500.0, 500.0, 320.0, 240.0};
+    camera.k1 = k1;
+    camera.k2 = k2;
+    camera.k3 = k3;
+    return camera;
+  };
+  const auto farthest_seen = [](const core::PinholeRadtan& camera) {
+    double last_x = 0.0;
+    for (double aside = 0.0; aside < 5.0; aside += 0.01) {
+      const auto pixel = project(camera, {aside, 0.0, 1.0});
+      if (!pixel) return aside;
+      EXPECT_GE(pixel->x(), last_x) << aside;
+      last_x = pixel->x();
+    }
+    return 5.0;
+  };
+  EXPECT_NEAR(farthest_seen(camera_with(0.05, -0.08, 0.0)), 1.333, 0.02);
+  EXPECT_NEAR(farthest_seen(camera_with(-0.3, 0.0, 0.0)), 1.054, 0.02);
+  EXPECT_NEAR(farthest_seen(camera_with(-0.4, 0.07, 0.0)), 1.195, 0.02) << "and turns once more";
+  EXPECT_NEAR(farthest_seen(camera_with(-0.9, 0.35, -0.03)), 0.748, 0.02) << "twice more";
+  EXPECT_EQ(farthest_seen(camera_with(0.0, 0.0, 0.0)), 5.0);
+  EXPECT_EQ(farthest_seen(camera_with(0.2, 0.1, 0.1)), 5.0);
+  EXPECT_EQ(farthest_seen(strong_camera()), 5.0);
+}
+
 TEST(Camera, TheFieldOfViewReachesFromEdgeToEdge) {
   constexpr double kRight_rad = std::numbers::pi / 2.0;
   EXPECT_NEAR(horizontal_field_of_view_rad(core::PinholeRadtan{640, 480, 320, 320, 319.5, 239.5}),
