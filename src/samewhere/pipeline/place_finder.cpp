@@ -51,6 +51,18 @@ Place place_of(const FoundPlace& found) {
   return {found.track.pose.reference_keyframe, found.track.pose.reference_from_frame, false};
 }
 
+// By the judge, who also says where there.
+bool is_recognised_within_reach(const Place& place, const features::View& view,
+                                const IsWithinReach& is_within_reach) {
+  if (!place.is_recognised || !place.keyframe_from_body) return false;
+  core::FramePose pose;
+  pose.frame = view.frame;
+  pose.stamp_s = view.stamp_s;
+  pose.reference_keyframe = place.keyframe;
+  pose.reference_from_frame = *place.keyframe_from_body;
+  return is_within_reach(pose);
+}
+
 bool are_one_place(const scene::MapVersion& map, const Place& a, const Place& b,
                    double distance_m) {
   const core::Rigid3 apart = inverse(world_from_body(map, a)) * world_from_body(map, b);
@@ -123,7 +135,11 @@ void PlaceFinder::think_of(const Place& place, const Question& question) {
     return;
   }
   Sight sight = look_at(place, question);
-  if (!sight.found) return;
+  if (!sight.found) {
+    if (is_recognised_within_reach(place, question.view, question.is_within_reach))
+      untracked_.push_back(place);
+    return;
+  }
   Hypothesis next{place_of(*sight.found), {}, std::move(sight.found)};
   next.place.is_recognised = place.is_recognised;
   hypotheses_.push_back(std::move(next));
@@ -215,7 +231,8 @@ bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis
   return explains_as_much || (!is_weak && is_as_true_to_itself);
 }
 
-bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const Proof& proof) const {
+bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const scene::MapVersion& map,
+                            const Proof& proof) const {
   if (!hypothesis.found || !hypothesis.place.is_recognised) return false;
   const bool is_weak = hypothesis.found->track.pose.status == core::FrameStatus::kWeak;
   if (is_weak && !(proof.may_be_weak && hypotheses_.size() == 1)) return false;
@@ -223,6 +240,11 @@ bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const Proof& proof) co
       std::count_if(hypothesis.explained.begin(), hypothesis.explained.end(),
                     [](const Explained& of_view) { return of_view.is_testable; });
   if (num_testable < proof.num_views) return false;
+  const double distance_m = median_distance(*hypothesis.found);
+  const bool is_elsewhere_too = std::ranges::any_of(untracked_, [&](const Place& other) {
+    return !are_one_place(map, hypothesis.place, other, distance_m);
+  });
+  if (is_elsewhere_too) return false;
   return std::none_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
     return &other != &hypothesis && is_rival(other, hypothesis);
   });
@@ -239,6 +261,7 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
                                             const std::vector<Place>& places, const Proof& proof,
                                             const IsWithinReach& is_within_reach) {
   const Question question{view, map, is_within_reach};
+  untracked_.clear();
   std::vector<Place> elsewhere;
   for (Hypothesis& known : hypotheses_) {
     Sight sight = look_at(known.place, question);
@@ -256,7 +279,7 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
   record(view, map);
   merge(map);
   for (Hypothesis& hypothesis : hypotheses_) {
-    if (!is_proven(hypothesis, proof)) continue;
+    if (!is_proven(hypothesis, map, proof)) continue;
     FoundPlace found = std::move(*hypothesis.found);
     forget();
     return found;

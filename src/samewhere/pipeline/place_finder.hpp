@@ -33,7 +33,9 @@ struct Proof {
 // they explain of the same views is added up. One place is found once it has explained enough
 // views, and no other about as many inliers, or as many of the landmarks that should be in sight
 // there (track.lost.max_rival_ratio). Until then nobody can tell; the places are kept, for whoever
-// walks on learns in the end which of them goes on as the views do.
+// walks on learns in the end which of them goes on as the views do. A place that the judge
+// recognised in the view, though nothing can be tracked there, is another place all the same: while
+// there is one, nobody can tell either.
 class PlaceFinder {
  public:
   // Both outlive it.
@@ -51,7 +53,10 @@ class PlaceFinder {
   bool has_fresh_place(int num_views) const;
 
   // Nobody is lost any more, or the map is given up.
-  void forget() { hypotheses_.clear(); }
+  void forget() {
+    hypotheses_.clear();
+    untracked_.clear();
+  }
 
  private:
   // What a place makes of a view. Not testable: the map ends where the view looks.
@@ -88,11 +93,13 @@ class PlaceFinder {
   void record(const features::View& view, const scene::MapVersion& map);
   void merge(const scene::MapVersion& map);
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
-  bool is_proven(const Hypothesis& hypothesis, const Proof& proof) const;
+  bool is_proven(const Hypothesis& hypothesis, const scene::MapVersion& map,
+                 const Proof& proof) const;
 
   const Config& config_;
   const track::Tracker& tracker_;
   std::vector<Hypothesis> hypotheses_;
+  std::vector<Place> untracked_;  // recognised in the last view, where the judge says that it is
 };
 
 }  // namespace samewhere::pipeline

@@ -96,6 +96,27 @@ TEST_F(TestPlaceFinder, APlaceBeyondReachIsNoRival) {
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
 }
 
+// The judge recognises it, but nothing of what the map has there can be tracked.
+TEST_F(TestPlaceFinder, APlaceThatIsRecognisedButCannotBeTrackedIsARivalAsLongAsItIsRecognised) {
+  const scene::MapVersion map = map_with_twins(world_, 1.0);
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  std::vector<Place> unrecognised = both_;
+  unrecognised[0].is_recognised = false;
+  const auto found = look(map, 2 * kNumViews, unrecognised);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
+}
+
+TEST_F(TestPlaceFinder, WhatIsRecognisedBeyondReachIsNoRivalEvenIfItCannotBeTracked) {
+  const scene::MapVersion map = map_with_twins(world_, 1.0);
+  const IsWithinReach near_here = [](const core::FramePose& pose) {
+    return pose.reference_keyframe == kHere;
+  };
+  std::optional<FoundPlace> found;
+  for (int i = 0; i < kNumViews; ++i) found = look(map, i, both_, near_here);
+  EXPECT_TRUE(found);
+}
+
 // Without all but a share of the features.
 features::View thinned(const features::View& view, double share) {
   core::Random random(4);
