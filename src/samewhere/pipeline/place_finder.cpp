@@ -135,11 +135,7 @@ void PlaceFinder::think_of(const Place& place, const Question& question) {
     return;
   }
   Sight sight = look_at(place, question);
-  if (!sight.found) {
-    if (is_recognised_within_reach(place, question.view, question.is_within_reach))
-      untracked_.push_back(place);
-    return;
-  }
+  if (!sight.found) return;
   Hypothesis next{place_of(*sight.found), {}, std::move(sight.found)};
   next.place.is_recognised = place.is_recognised;
   hypotheses_.push_back(std::move(next));
@@ -209,6 +205,20 @@ void PlaceFinder::record(const features::View& view, const scene::MapVersion& ma
   }
 }
 
+std::vector<Place> PlaceFinder::unheard_of(const std::vector<Place>& places,
+                                           const Question& question) const {
+  std::vector<Place> unheard;
+  for (const Place& place : places) {
+    if (!is_recognised_within_reach(place, question.view, question.is_within_reach)) continue;
+    const bool is_heard = std::ranges::any_of(hypotheses_, [&](const Hypothesis& hypothesis) {
+      return hypothesis.found && are_one_place(question.map, hypothesis.place, place,
+                                               median_distance(*hypothesis.found));
+    });
+    if (!is_heard) unheard.push_back(place);
+  }
+  return unheard;
+}
+
 bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const {
   Explained by_other;
   Explained by_this;
@@ -241,7 +251,7 @@ bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const scene::MapVersio
                     [](const Explained& of_view) { return of_view.is_testable; });
   if (num_testable < proof.num_views) return false;
   const double distance_m = median_distance(*hypothesis.found);
-  const bool is_elsewhere_too = std::ranges::any_of(untracked_, [&](const Place& other) {
+  const bool is_elsewhere_too = std::ranges::any_of(unheard_, [&](const Place& other) {
     return !are_one_place(map, hypothesis.place, other, distance_m);
   });
   if (is_elsewhere_too) return false;
@@ -261,7 +271,6 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
                                             const std::vector<Place>& places, const Proof& proof,
                                             const IsWithinReach& is_within_reach) {
   const Question question{view, map, is_within_reach};
-  untracked_.clear();
   std::vector<Place> elsewhere;
   for (Hypothesis& known : hypotheses_) {
     Sight sight = look_at(known.place, question);
@@ -278,6 +287,7 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
   if (hypotheses_.empty()) return std::nullopt;
   record(view, map);
   merge(map);
+  unheard_ = unheard_of(places, question);
   for (Hypothesis& hypothesis : hypotheses_) {
     if (!is_proven(hypothesis, map, proof)) continue;
     FoundPlace found = std::move(*hypothesis.found);

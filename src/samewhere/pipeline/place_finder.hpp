@@ -55,7 +55,7 @@ class PlaceFinder {
   // Nobody is lost any more, or the map is given up.
   void forget() {
     hypotheses_.clear();
-    untracked_.clear();
+    unheard_.clear();
   }
 
  private:
@@ -92,6 +92,8 @@ class PlaceFinder {
                       const scene::MapVersion& map) const;
   void record(const features::View& view, const scene::MapVersion& map);
   void merge(const scene::MapVersion& map);
+  // Recognised, where the judge says that it is, and none of the hypotheses.
+  std::vector<Place> unheard_of(const std::vector<Place>& places, const Question& question) const;
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
   bool is_proven(const Hypothesis& hypothesis, const scene::MapVersion& map,
                  const Proof& proof) const;
@@ -99,7 +101,7 @@ class PlaceFinder {
   const Config& config_;
   const track::Tracker& tracker_;
   std::vector<Hypothesis> hypotheses_;
-  std::vector<Place> untracked_;  // recognised in the last view, where the judge says that it is
+  std::vector<Place> unheard_;  // of the last view, see unheard_of()
 };
 
 }  // namespace samewhere::pipeline

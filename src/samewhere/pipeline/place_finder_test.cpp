@@ -149,6 +149,16 @@ TEST_F(TestPlaceFinder, APlaceOfWhichTheMapKnowsLittleIsHeldAgainstWhatItKnows) 
     EXPECT_FALSE(look(map, i, both_)) << "view " << i << ": the look-alike has more inliers";
 }
 
+// Less than half of what the look-alike shows: they cannot be held against each other.
+TEST_F(TestPlaceFinder, APlaceOfWhichTheMapKnowsTooLittleIsARivalAsLongAsItIsRecognised) {
+  scene::MapVersion map;
+  map = apply(map, map::start_map(map, thinned(features::test_view(world_, 0, {}), 0.3), {}));
+  map = apply(map,
+              map::start_map(map, features::test_view(partly_different(world_, 0.1), 1, {}), kFar));
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  EXPECT_TRUE(look(map, 2 * kNumViews, {both_[0]})) << "or this shows nothing";
+}
+
 TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
   const core::Rigid3 turned{core::exp_so3({0.0, 0.7, 0.0}), {0.0, 0.0, 0.0}};
   // the look-alike is known further than the place
