@@ -241,8 +241,7 @@ bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis
   return explains_as_much || (!is_weak && is_as_true_to_itself);
 }
 
-bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const scene::MapVersion& map,
-                            const Proof& proof) const {
+bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const Proof& proof) const {
   if (!hypothesis.found || !hypothesis.place.is_recognised) return false;
   const bool is_weak = hypothesis.found->track.pose.status == core::FrameStatus::kWeak;
   if (is_weak && !(proof.may_be_weak && hypotheses_.size() == 1)) return false;
@@ -250,11 +249,6 @@ bool PlaceFinder::is_proven(const Hypothesis& hypothesis, const scene::MapVersio
       std::count_if(hypothesis.explained.begin(), hypothesis.explained.end(),
                     [](const Explained& of_view) { return of_view.is_testable; });
   if (num_testable < proof.num_views) return false;
-  const double distance_m = median_distance(*hypothesis.found);
-  const bool is_elsewhere_too = std::ranges::any_of(unheard_, [&](const Place& other) {
-    return !are_one_place(map, hypothesis.place, other, distance_m);
-  });
-  if (is_elsewhere_too) return false;
   return std::none_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
     return &other != &hypothesis && is_rival(other, hypothesis);
   });
@@ -287,9 +281,14 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
   if (hypotheses_.empty()) return std::nullopt;
   record(view, map);
   merge(map);
-  unheard_ = unheard_of(places, question);
+  const std::vector<Place> unheard = unheard_of(places, question);
   for (Hypothesis& hypothesis : hypotheses_) {
-    if (!is_proven(hypothesis, map, proof)) continue;
+    if (!is_proven(hypothesis, proof)) continue;
+    const double distance_m = median_distance(*hypothesis.found);
+    const bool is_there_alone = std::ranges::all_of(unheard, [&](const Place& other) {
+      return are_one_place(map, hypothesis.place, other, distance_m);
+    });
+    if (!is_there_alone) continue;
     FoundPlace found = std::move(*hypothesis.found);
     forget();
     return found;

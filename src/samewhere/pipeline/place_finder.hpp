@@ -53,10 +53,7 @@ class PlaceFinder {
   bool has_fresh_place(int num_views) const;
 
   // Nobody is lost any more, or the map is given up.
-  void forget() {
-    hypotheses_.clear();
-    unheard_.clear();
-  }
+  void forget() { hypotheses_.clear(); }
 
  private:
   // What a place makes of a view. Not testable: the map ends where the view looks.
@@ -95,13 +92,11 @@ class PlaceFinder {
   // Recognised, where the judge says that it is, and none of the hypotheses.
   std::vector<Place> unheard_of(const std::vector<Place>& places, const Question& question) const;
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
-  bool is_proven(const Hypothesis& hypothesis, const scene::MapVersion& map,
-                 const Proof& proof) const;
+  bool is_proven(const Hypothesis& hypothesis, const Proof& proof) const;
 
   const Config& config_;
   const track::Tracker& tracker_;
   std::vector<Hypothesis> hypotheses_;
-  std::vector<Place> unheard_;  // of the last view, see unheard_of()
 };
 
 }  // namespace samewhere::pipeline
