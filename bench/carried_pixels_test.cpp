@@ -10,7 +10,7 @@
 namespace samewhere::bench {
 namespace {
 
-const core::Camera kCamera = twin::kTwinCamera;
+const core::Camera kPixelCamera = twin::kTwinCamera;
 const Eigen::Vector3d kLow_m(-1.5, -1.2, -2.0);
 const Eigen::Vector3d kHigh_m(1.5, 1.2, 9.0);
 
@@ -27,12 +27,12 @@ double depth_m_of(const core::Rigid3& world_from_camera, const Eigen::Vector3d& 
 }
 
 DepthView seen_from(const core::Rigid3& world_from_camera) {
-  const core::PinholeRadtan& camera = geometry::pinhole(kCamera);
+  const core::PinholeRadtan& camera = geometry::pinhole(kPixelCamera);
   DepthView view{cv::Mat(camera.height_px, camera.width_px, CV_32F), world_from_camera};
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
       view.depth_m.at<float>(y, x) = static_cast<float>(
-          depth_m_of(world_from_camera, geometry::bearing(kCamera, Eigen::Vector2d(x, y))));
+          depth_m_of(world_from_camera, geometry::bearing(kPixelCamera, Eigen::Vector2d(x, y))));
     }
   }
   return view;
@@ -49,7 +49,7 @@ struct Told {
 
 Told told(const DepthView& from, const DepthView& to) {
   std::vector<double> residuals;
-  for (const auto& pixel : carried_pixels(kCamera, from, to, 12)) {
+  for (const auto& pixel : carried_pixels(kPixelCamera, from, to, 12)) {
     residuals.push_back(pixel.depth_residual());
   }
   EXPECT_GT(residuals.size(), 500U);

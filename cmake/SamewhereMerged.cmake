@@ -3,7 +3,7 @@
 # forgets an #include fails there; a name that two files of a folder define for themselves fails here.
 #
 # samewhere_merge(TARGET): a library or program.
-# samewhere_merge_test(TARGET): a test program, which includes GoogleTest; its files stay apart, as they share names of helpers.
+# samewhere_merge_test(TARGET): a test program, which includes GoogleTest.
 
 set(SAMEWHERE_COMMON_HEADERS
   <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numbers> <optional> <set> <span>
@@ -36,6 +36,7 @@ endfunction()
 
 function(samewhere_merge_test TARGET)
   if(SAMEWHERE_MERGED)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
     target_precompile_headers(${TARGET} REUSE_FROM samewhere_precompiled_test)
   endif()
 endfunction()

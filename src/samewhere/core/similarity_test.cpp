@@ -12,9 +12,9 @@
 namespace samewhere::core {
 namespace {
 
-constexpr int kNumSeeds = 100;
+constexpr int kNumTrials = 100;
 
-std::vector<float> random_vector(Random& random, std::size_t size) {
+std::vector<float> random_values(Random& random, std::size_t size) {
   std::vector<float> vector(size);
   for (float& value : vector) value = static_cast<float>(random.gaussian());
   return vector;
@@ -37,11 +37,11 @@ TEST(Similarity, KnowsHandMadeCases) {
 }
 
 TEST(Similarity, IsSymmetricAndStaysInsideMinusOneToOne) {
-  for (int seed = 0; seed < kNumSeeds; ++seed) {
+  for (int seed = 0; seed < kNumTrials; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const std::size_t size = 1 + random.index(60);
-    const auto x = random_vector(random, size);
-    const auto y = random_vector(random, size);
+    const auto x = random_values(random, size);
+    const auto y = random_values(random, size);
     SCOPED_TRACE("seed " + std::to_string(seed));
     for (const auto measure : {ncc, cosine}) {
       EXPECT_EQ(measure(x, y), measure(y, x));
@@ -53,10 +53,10 @@ TEST(Similarity, IsSymmetricAndStaysInsideMinusOneToOne) {
 }
 
 TEST(Similarity, NccIgnoresBrightnessAndContrastAndCosineOnlyContrast) {
-  for (int seed = 0; seed < kNumSeeds; ++seed) {
+  for (int seed = 0; seed < kNumTrials; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    const auto x = random_vector(random, 50);
-    const auto y = random_vector(random, 50);
+    const auto x = random_values(random, 50);
+    const auto y = random_values(random, 50);
     const auto brighter = scaled(y, 1.0F, static_cast<float>(random.uniform(0.5, 2.0)));
     const auto stronger = scaled(y, static_cast<float>(random.uniform(0.1, 10.0)), 0.0F);
     const auto negative = scaled(y, -1.0F, 0.0F);
@@ -71,7 +71,7 @@ TEST(Similarity, NccIgnoresBrightnessAndContrastAndCosineOnlyContrast) {
 
 TEST(Similarity, ABlackOrConstantViewCorrelatesWithNothing) {
   Random random(3);
-  const auto x = random_vector(random, 40);
+  const auto x = random_values(random, 40);
   const std::vector<float> black(40, 0.0F);
   const std::vector<float> flat(40, 0.1F);  // 0.1 has no exact float, its mean is off by rounding
   EXPECT_EQ(ncc(x, black), 0.0);
@@ -84,11 +84,11 @@ TEST(Similarity, ABlackOrConstantViewCorrelatesWithNothing) {
 }
 
 TEST(Similarity, DotOfCentredUnitVectorsIsTheNcc) {
-  for (int seed = 0; seed < kNumSeeds; ++seed) {
+  for (int seed = 0; seed < kNumTrials; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const std::size_t size = 2 + random.index(2000);
-    const auto x = scaled(random_vector(random, size), 1.0F, 2.0F);
-    const auto y = scaled(random_vector(random, size), 3.0F, -1.0F);
+    const auto x = scaled(random_values(random, size), 1.0F, 2.0F);
+    const auto y = scaled(random_values(random, size), 3.0F, -1.0F);
     EXPECT_NEAR(dot(centred_unit(x), centred_unit(y)), ncc(x, y), 2e-6) << "seed " << seed;
     EXPECT_NEAR(dot(unit(x), unit(y)), cosine(x, y), 2e-6) << "seed " << seed;
     EXPECT_NEAR(dot(centred_unit(x), centred_unit(x)), 1.0, 2e-6) << "seed " << seed;
@@ -96,11 +96,11 @@ TEST(Similarity, DotOfCentredUnitVectorsIsTheNcc) {
 }
 
 TEST(Similarity, TheNccNeedsOnlyOneOfTheVectorsCentred) {
-  for (int seed = 0; seed < kNumSeeds; ++seed) {
+  for (int seed = 0; seed < kNumTrials; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const std::size_t size = 2 + random.index(60);
-    const auto x = random_vector(random, size);
-    const auto y = unit(scaled(random_vector(random, size), 1.0F, 2.0F));
+    const auto x = random_values(random, size);
+    const auto y = unit(scaled(random_values(random, size), 1.0F, 2.0F));
     EXPECT_NEAR(dot(centred_unit(x), y) * inverse_deviation(y), ncc(x, y), 1e-5) << "seed " << seed;
   }
   EXPECT_EQ(inverse_deviation(std::vector<float>{3.0F, 3.0F, 3.0F}), 0.0F);

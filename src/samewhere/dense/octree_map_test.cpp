@@ -11,7 +11,7 @@ namespace samewhere::dense {
 namespace {
 
 constexpr double kVoxel_m = 0.05;
-const Config kConfig{.step_px = 1, .max_depth_m = 6.0, .octree_voxel_m = kVoxel_m};
+const Config kOctreeConfig{.step_px = 1, .max_depth_m = 6.0, .octree_voxel_m = kVoxel_m};
 
 octomap::point3d in_world(double x, double y, double z) {
   const Eigen::Vector3f point =
@@ -20,8 +20,8 @@ octomap::point3d in_world(double x, double y, double z) {
 }
 
 TEST(OctreeMap, ItsLibraryReadsTheRoomBack) {
-  OctreeMap map(kConfig);
-  PointReader reader(kConfig);
+  OctreeMap map(kOctreeConfig);
+  PointReader reader(kOctreeConfig);
   for (const View& view : TestRoom::walk()) {
     map.add(reader.points(view), view.world_from_camera.translation);
   }
@@ -51,7 +51,7 @@ TEST(OctreeMap, ItsLibraryReadsTheRoomBack) {
 }
 
 TEST(OctreeMap, ACameraBeyondItsReachIsRefused) {
-  OctreeMap map(kConfig);
+  OctreeMap map(kOctreeConfig);
   try {
     map.add({}, {0.0, -1e4, 0.0});
     FAIL() << "it was taken";

@@ -15,7 +15,7 @@
 namespace samewhere::describe {
 namespace {
 
-constexpr core::FrameId kFrame(7);
+constexpr core::FrameId kAnyFrame(7);
 
 // A room of random tilted things, seen from a step to the side by shifting `shift_px`.
 cv::Mat room(std::uint64_t seed, int shift_px = 0) {
@@ -35,17 +35,17 @@ cv::Mat room(std::uint64_t seed, int shift_px = 0) {
 
 double similarity(const cv::Mat& a, const cv::Mat& b) {
   const auto describer = make_describer(Config{});
-  return core::ncc(describer->describe(kFrame, a).unit, describer->describe(kFrame, b).unit);
+  return core::ncc(describer->describe(kAnyFrame, a).unit, describer->describe(kAnyFrame, b).unit);
 }
 
 TEST(Describer, AViewBecomesAUnitVectorOfTheAnnouncedDescriber) {
   const auto describer = make_describer(Config{});
-  const core::Descriptor descriptor = describer->describe(kFrame, room(1));
-  EXPECT_EQ(descriptor.frame, kFrame);
+  const core::Descriptor descriptor = describer->describe(kAnyFrame, room(1));
+  EXPECT_EQ(descriptor.frame, kAnyFrame);
   EXPECT_EQ(descriptor.describer_checksum, describer->checksum());
   EXPECT_EQ(descriptor.unit.size(), 1260U);
   EXPECT_NEAR(core::dot(descriptor.unit, descriptor.unit), 1.0, 1e-5);
-  EXPECT_EQ(describer->describe(kFrame, room(1)).unit, descriptor.unit);
+  EXPECT_EQ(describer->describe(kAnyFrame, room(1)).unit, descriptor.unit);
 }
 
 TEST(Describer, AViewWithoutStructureIsAllZero) {
@@ -53,9 +53,9 @@ TEST(Describer, AViewWithoutStructureIsAllZero) {
   for (const cv::Mat& image :
        {cv::Mat(480, 640, CV_8UC3, cv::Scalar(0, 0, 0)), cv::Mat(1, 1, CV_8UC1, cv::Scalar(9)),
         cv::Mat(3, 2, CV_8UC1, cv::Scalar(255))}) {
-    EXPECT_THAT(describer->describe(kFrame, image).unit, testing::Each(0.0F));
+    EXPECT_THAT(describer->describe(kAnyFrame, image).unit, testing::Each(0.0F));
   }
-  EXPECT_THROW(describer->describe(kFrame, cv::Mat()), core::ContractError);
+  EXPECT_THROW(describer->describe(kAnyFrame, cv::Mat()), core::ContractError);
 }
 
 TEST(Describer, AStepAsideLooksMoreAlikeThanAnotherRoom) {

@@ -11,7 +11,7 @@ namespace samewhere::describe {
 namespace {
 
 // Grey levels around a random level with a random spread.
-cv::Mat random_image(core::Random& random, int rows, int columns) {
+cv::Mat noise_image(core::Random& random, int rows, int columns) {
   cv::Mat image(rows, columns, CV_8UC1);
   const double level = random.uniform(0.0, 255.0);
   const double spread = random.uniform(0.0, 80.0);
@@ -54,7 +54,7 @@ TEST(Preprocess, WithoutEqualisationKeepsTheLevels) {
 
 TEST(Preprocess, LeavesItsInputAlone) {
   core::Random random(1);
-  const cv::Mat image = random_image(random, 360, 480);
+  const cv::Mat image = noise_image(random, 360, 480);
   const cv::Mat before = image.clone();
   preprocess(image, Config{});
   EXPECT_EQ(max_difference(image, before), 0.0);

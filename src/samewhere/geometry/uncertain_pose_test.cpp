@@ -14,7 +14,7 @@ Vector6d random_vector(core::Random& random, double size) {
   return v;
 }
 
-UncertainPose random_pose(core::Random& random) {
+UncertainPose random_uncertain_pose(core::Random& random) {
   core::Matrix6d root;
   for (int i = 0; i < 6; ++i) root.col(i) = random_vector(random, 0.002);
   return {core::exp_r3so3(random_vector(random, 0.7)), root * root.transpose()};
@@ -28,7 +28,7 @@ core::Rigid3 drawn(const UncertainPose& pose, core::Random& random) {
           pose.a_from_b.translation + error.head<3>()};
 }
 
-Vector6d error_of(const core::Rigid3& seen, const core::Rigid3& mean) {
+Vector6d apart_of(const core::Rigid3& seen, const core::Rigid3& mean) {
   Vector6d error;
   error << seen.translation - mean.translation,
       core::log_so3(mean.rotation.conjugate() * seen.rotation);
@@ -40,7 +40,7 @@ core::Matrix6d sampled_covariance(const core::Rigid3& mean, const Draw& draw) {
   constexpr int kDraws = 20000;
   core::Matrix6d sum = core::Matrix6d::Zero();
   for (int i = 0; i < kDraws; ++i) {
-    const Vector6d error = error_of(draw(), mean);
+    const Vector6d error = apart_of(draw(), mean);
     sum += error * error.transpose();
   }
   return sum / kDraws;
@@ -49,8 +49,8 @@ core::Matrix6d sampled_covariance(const core::Rigid3& mean, const Draw& draw) {
 TEST(UncertainPose, CompositionMatchesRandomDraws) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
-    const UncertainPose a = random_pose(random);
-    const UncertainPose b = random_pose(random);
+    const UncertainPose a = random_uncertain_pose(random);
+    const UncertainPose b = random_uncertain_pose(random);
     const UncertainPose both = compose(a, b);
     const auto sampled =
         sampled_covariance(both.a_from_b, [&] { return drawn(a, random) * drawn(b, random); });
@@ -61,7 +61,7 @@ TEST(UncertainPose, CompositionMatchesRandomDraws) {
 TEST(UncertainPose, InversionMatchesRandomDraws) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
-    const UncertainPose a = random_pose(random);
+    const UncertainPose a = random_uncertain_pose(random);
     const UncertainPose back = inverse(a);
     const auto sampled =
         sampled_covariance(back.a_from_b, [&] { return core::inverse(drawn(a, random)); });

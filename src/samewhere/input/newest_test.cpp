@@ -80,9 +80,9 @@ TEST(Newest, ItMayBeDestroyedWhileNobodyListens) {
 }
 
 // Frames a tenth of a second apart, the first at 50 s.
-class Recording : public core::Source {
+class PlayedRecording : public core::Source {
  public:
-  explicit Recording(int num_frames, double step_s = 0.1)
+  explicit PlayedRecording(int num_frames, double step_s = 0.1)
       : num_frames_(num_frames), step_s_(step_s) {}
 
   core::SourceInfo info() const override { return {.name = "walk", .num_frames = num_frames_}; }
@@ -122,7 +122,7 @@ struct ToldClock {
 
 TEST(Played, OfTheFramesThatAreDueTheNewestIsGivenAndTheOthersAreCounted) {
   ToldClock clock;
-  const auto source = played(std::make_unique<Recording>(6), clock.wait());
+  const auto source = played(std::make_unique<PlayedRecording>(6), clock.wait());
   EXPECT_TRUE(source->info().is_live);
   clock.go_on(1);
   EXPECT_EQ(source->next().value().stamp_s, 50.0);
@@ -145,20 +145,21 @@ TEST(Played, OfTheFramesThatAreDueTheNewestIsGivenAndTheOthersAreCounted) {
 TEST(Played, NothingIsPlayedBeforeTheFirstFrameIsAskedFor) {
   ToldClock clock;
   clock.leave.close();
-  played(std::make_unique<Recording>(3), clock.wait()).reset();
+  played(std::make_unique<PlayedRecording>(3), clock.wait()).reset();
   clock.asked.close();
   EXPECT_FALSE(clock.asked.receive());
 }
 
 TEST(Played, NothingComesAfterTheWaitWasGivenUp) {
-  const auto source = played(std::make_unique<Recording>(5), [](double s) { return s < 0.15; });
+  const auto source =
+      played(std::make_unique<PlayedRecording>(5), [](double s) { return s < 0.15; });
   double last_s = 0.0;
   while (const auto frame = source->next()) last_s = frame->stamp_s;
   EXPECT_NEAR(last_s, 50.1, 1e-9);
 }
 
 TEST(Played, ByTheClockNoFrameComesBeforeItsTime) {
-  const auto source = played(std::make_unique<Recording>(3, 0.02));
+  const auto source = played(std::make_unique<PlayedRecording>(3, 0.02));
   const auto start = std::chrono::steady_clock::now();
   while (const auto frame = source->next()) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
@@ -168,7 +169,7 @@ TEST(Played, ByTheClockNoFrameComesBeforeItsTime) {
 
 TEST(Played, ItMayBeDestroyedLongBeforeTheNextFrameIsDue) {
   for (int i = 0; i < 20; ++i) {
-    const auto source = played(std::make_unique<Recording>(3, 3600.0));
+    const auto source = played(std::make_unique<PlayedRecording>(3, 3600.0));
     EXPECT_TRUE(i % 2 == 0 || source->next());
   }
 }

@@ -15,19 +15,6 @@ namespace {
 using core::KeyframeId;
 using scene::MapVersion;
 
-constexpr auto kNone = [](core::LandmarkId) { return false; };
-
-double worst_error(const MapVersion& map) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
-    if (!is_live(map.keyframes[i])) continue;
-    const core::Rigid3 error =
-        inverse(test_walk(static_cast<int>(i))) * world_from_body(map, KeyframeId(i));
-    worst = std::max(worst, core::log_r3so3(error).norm());
-  }
-  return worst;
-}
-
 MapVersion with_next(const MapVersion& map, const features::TestWorld& world) {
   const auto i = static_cast<int>(map.keyframes.size());
   const features::View view = features::test_view(world, i, test_walk(i));

@@ -13,19 +13,7 @@
 namespace samewhere::map {
 namespace {
 
-constexpr auto kNone = [](core::LandmarkId) { return false; };
-
 const scene::Keyframe& newest(const scene::MapVersion& map) { return map.keyframes.back(); }
-
-double worst_error(const scene::MapVersion& map) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
-    const core::Rigid3 error =
-        inverse(test_walk(static_cast<int>(i))) * map.keyframes[i].world_from_body;
-    worst = std::max(worst, core::log_r3so3(error).norm());
-  }
-  return worst;
-}
 
 // Distance of each live landmark to the point of the world that has its descriptor.
 std::vector<double> errors_m(const scene::MapVersion& map, const features::TestWorld& world,

@@ -2,6 +2,7 @@
 
 // For tests: maps of the points of a test world, made by the functions that the pipeline calls.
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include <samewhere/map/mapper.hpp>
 
 namespace samewhere::map {
+
+// Overlooked in a view: nothing.
+constexpr auto kNone = [](core::LandmarkId) { return false; };
 
 // The view as tracking would hand it over: every feature whose point is a landmark of the map shows
 // it, but for those that `is_overlooked` names by id.
@@ -54,6 +58,19 @@ inline scene::MapVersion test_map(const features::TestWorld& world, int num_keyf
                                                   [](core::LandmarkId) { return false; })));
   }
   return map;
+}
+
+// How far the keyframe that is worst off lies from where the walk was (metres and radians as one
+// vector).
+inline double worst_error(const scene::MapVersion& map) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    if (!is_live(map.keyframes[i])) continue;
+    const core::Rigid3 error =
+        inverse(test_walk(static_cast<int>(i))) * world_from_body(map, core::KeyframeId(i));
+    worst = std::max(worst, core::log_r3so3(error).norm());
+  }
+  return worst;
 }
 
 }  // namespace samewhere::map

@@ -18,7 +18,7 @@ core::Rigid3 random_pose(core::Random& random, double size) {
   return core::exp_r3so3(tangent);
 }
 
-core::Matrix6d random_information(core::Random& random) {
+core::Matrix6d any_information(core::Random& random) {
   core::Matrix6d root;
   for (double& value : root.reshaped()) value = random.gaussian();
   return root * root.transpose() + core::Matrix6d::Identity();
@@ -35,7 +35,7 @@ core::Vector6d g2o_error(const core::Rigid3& measured, const core::Rigid3& found
 TEST(G2oFile, AnEdgeCostsInG2oWhatItCostsHere) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     core::Random random(seed);
-    const PoseEdge edge{0, 1, random_pose(random, 1.0), random_information(random), false};
+    const PoseEdge edge{0, 1, random_pose(random, 1.0), any_information(random), false};
     const core::Rigid3 found = edge.a_from_b * random_pose(random, 1e-4);
     const core::Vector6d ours = edge_error(edge, core::Rigid3{}, found);
     const core::Vector6d theirs = g2o_error(edge.a_from_b, found);
@@ -51,7 +51,7 @@ TEST(G2oFile, OdometryStaysOdometryWhereverItLeads) {
   PoseGraph graph;
   for (int i = 0; i < 4; ++i) graph.world_from_node.push_back(random_pose(random, 1.0));
   const auto edge = [&](int a, int b, bool is_loop) {
-    return PoseEdge{a, b, random_pose(random, 1.0), random_information(random), is_loop};
+    return PoseEdge{a, b, random_pose(random, 1.0), any_information(random), is_loop};
   };
   graph.edges = {edge(0, 1, false), edge(0, 3, false), edge(1, 2, false), edge(0, 3, true),
                  edge(1, 3, true),  edge(2, 1, true),  edge(3, 2, false), edge(2, 3, true)};
@@ -70,8 +70,8 @@ TEST(G2oFile, HasALineForEachNodeAndEdge) {
   core::Random random(1);
   PoseGraph graph;
   for (int i = 0; i < 4; ++i) graph.world_from_node.push_back(random_pose(random, 1.0));
-  graph.edges = {{0, 1, random_pose(random, 1.0), random_information(random), false},
-                 {1, 3, random_pose(random, 1.0), random_information(random), true}};
+  graph.edges = {{0, 1, random_pose(random, 1.0), any_information(random), false},
+                 {1, 3, random_pose(random, 1.0), any_information(random), true}};
   std::istringstream lines(g2o_text(graph));
   std::string seen;
   for (std::string line; std::getline(lines, line);) {
@@ -125,7 +125,7 @@ PoseGraph ring(core::Random& random, bool is_planar) {
   graph.is_planar = is_planar;
   for (int i = 0; i < 6; ++i) graph.world_from_node.push_back(pose());
   for (int i = 0; i < 6; ++i) {
-    graph.edges.push_back({i, (i + 1) % 6, pose(), random_information(random), i == 5});
+    graph.edges.push_back({i, (i + 1) % 6, pose(), any_information(random), i == 5});
     if (is_planar) {  // nothing joins the plane to what leaves it
       core::Matrix6d& information = graph.edges.back().information;
       const Eigen::Matrix3d planar = information(kPlanarRows, kPlanarRows);

@@ -9,18 +9,19 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr double kSigma_m = 0.05;
-constexpr double kSigma_rad = 0.01;
+constexpr double kStepSigma_m = 0.05;
+constexpr double kStepSigma_rad = 0.01;
 
 core::Rigid3 noise(core::Random& random) {
   core::Vector6d tangent;
-  for (int i = 0; i < 6; ++i) tangent(i) = (i < 3 ? kSigma_m : kSigma_rad) * random.gaussian();
+  for (int i = 0; i < 6; ++i)
+    tangent(i) = (i < 3 ? kStepSigma_m : kStepSigma_rad) * random.gaussian();
   return core::exp_r3so3(tangent);
 }
 
 core::Matrix6d honest_information() {
   core::Vector6d sigma;
-  sigma << Eigen::Vector3d::Constant(kSigma_m), Eigen::Vector3d::Constant(kSigma_rad);
+  sigma << Eigen::Vector3d::Constant(kStepSigma_m), Eigen::Vector3d::Constant(kStepSigma_rad);
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
@@ -32,7 +33,7 @@ struct Laps {
   int num_loops = 0;
 };
 
-constexpr int kLap = 40;
+constexpr int kLapSteps = 40;
 
 Laps laps(core::Random& random, int num_laps) {
   Laps walk;
@@ -42,16 +43,16 @@ Laps laps(core::Random& random, int num_laps) {
   const auto add = [&](int a, int b, const core::Rigid3& a_from_b, bool is_loop) {
     graph.edges.push_back({a, b, a_from_b, honest_information(), is_loop});
   };
-  for (int i = 1; i < num_laps * kLap; ++i) {
+  for (int i = 1; i < num_laps * kLapSteps; ++i) {
     const core::Rigid3 step{core::exp_so3({0.0, i % 10 == 0 ? 1.5707963 : 0.0, 0.0}),
                             {0.0, 0.0, 1.0}};
     walk.truth.push_back(walk.truth.back() * step);
     add(i - 1, i, step * noise(random), false);
     graph.world_from_node.push_back(graph.world_from_node.back() * graph.edges.back().a_from_b);
   }
-  for (int i = kLap; i < num_laps * kLap; ++i) {
+  for (int i = kLapSteps; i < num_laps * kLapSteps; ++i) {
     const auto at = [&](int node) { return walk.truth[static_cast<std::size_t>(node)]; };
-    add(i - kLap, i, inverse(at(i - kLap)) * at(i) * noise(random), true);
+    add(i - kLapSteps, i, inverse(at(i - kLapSteps)) * at(i) * noise(random), true);
     ++walk.num_loops;
   }
   return walk;
@@ -194,7 +195,7 @@ TEST(PoseGraphOfLies, TheMethodAsPublishedRefusesLiesAtRandomAndBelievesThoseTha
 TEST(PoseGraphOfLies, OneInDoubtIsAskedWhenTheRestFitsAndWhenItDoesNot) {
   core::Random random(16);
   const Laps walk = laps(random, 3);
-  const auto loop = static_cast<std::size_t>(3 * kLap - 1);  // the first of them
+  const auto loop = static_cast<std::size_t>(3 * kLapSteps - 1);  // the first of them
   Laps true_one = walk;
   true_one.graph.edges[loop].is_doubted = true;
   EXPECT_EQ(solve_pose_graph(true_one.graph, {}).weights[loop], 1.0);
@@ -222,7 +223,7 @@ TEST(PoseGraphOfLies, OneInDoubtIsAskedWhenTheRestFitsAndWhenItDoesNot) {
 TEST(PoseGraphOfLies, OneLieIsFoundWithoutAskingAll) {
   core::Random random(16);
   const Laps walk = laps(random, 3);
-  const auto loop = static_cast<std::size_t>(3 * kLap - 1);
+  const auto loop = static_cast<std::size_t>(3 * kLapSteps - 1);
   Laps of_one = walk;
   of_one.graph.edges[loop].a_from_b.translation.x() += 20.0;
   Laps of_two = of_one;
@@ -242,7 +243,7 @@ TEST(PoseGraphOfLies, OneLieIsFoundWithoutAskingAll) {
 TEST(PoseGraphOfLies, ALoopThatFitsOnlyBesideOneInDoubtIsBelievedWithIt) {
   constexpr int kSteps = 10;
   const Config config;
-  const double gap_m = kSigma_m * (kSteps + 1) * std::sqrt(1.05 * config.loop_chi2);
+  const double gap_m = kStepSigma_m * (kSteps + 1) * std::sqrt(1.05 * config.loop_chi2);
   PoseGraph graph;
   graph.world_from_node = {core::Rigid3{}};
   const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
@@ -339,7 +340,7 @@ TEST(PoseGraphOfLies, ThoseThatAreAskedTogetherAreOneClaim) {
 TEST(PoseGraphOfLies, TheOnlyLoopIsBelievedIfOdometryMayErrThatMuch) {
   core::Random random(13);
   Laps walk = laps(random, 2);
-  walk.graph.edges.resize(static_cast<std::size_t>(2 * kLap));  // odometry and the first loop
+  walk.graph.edges.resize(static_cast<std::size_t>(2 * kLapSteps));  // odometry and the first loop
   Laps wrong = walk;
   EXPECT_EQ(solve_pose_graph(walk.graph, {}).weights.back(), 1.0);
   wrong.graph.edges.back().a_from_b.translation.x() += 20.0;

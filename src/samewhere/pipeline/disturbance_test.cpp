@@ -44,16 +44,16 @@ Config walk_config() {
   return config;
 }
 
-struct Walk {
+struct RenderedWalk {
   std::vector<core::Frame> frames;
   core::Trajectory truth;
 };
 
 // Rendered once: that takes longer than to track it.
-const Walk& walk() {
-  static const Walk walk = [] {
+const RenderedWalk& walk() {
+  static const RenderedWalk walk = [] {
     const auto source = open_source(walk_config());
-    Walk rendered{{}, source->truth().trajectory};
+    RenderedWalk rendered{{}, source->truth().trajectory};
     while (auto frame = source->next()) rendered.frames.push_back(std::move(*frame));
     return rendered;
   }();

@@ -14,13 +14,13 @@
 namespace samewhere::pipeline {
 namespace {
 
-constexpr int kNumFrames = 16;
+constexpr int kNumPictures = 16;
 
 // A few seconds in the corridor, with a window so short that there is much to find.
 Config short_walk(const std::string& profile_name) {
   Config config = profile(profile_name);
   config.source = "twin:office-loop?seed=5";
-  config.twin.num_frames = kNumFrames;
+  config.twin.num_frames = kNumPictures;
   config.retrieve.window_frames = 4;
   config.retrieve.group_size = 10;
   config.retrieve.queue_size = 2;
@@ -80,11 +80,12 @@ std::string bytes_of(Recognition recognition) {
   std::string bytes = report::pairs_text(outcome.matches) + report::pairs_text(outcome.accepted) +
                       report::loops_json(outcome.record.ledger);
   for (const auto& [frame, jpeg] : outcome.record.thumbnails) bytes += jpeg;
-  EXPECT_EQ(outcome.record.thumbnails.size(), kNumFrames);
+  EXPECT_EQ(outcome.record.thumbnails.size(), kNumPictures);
   EXPECT_FALSE(outcome.matches.empty());
   EXPECT_FALSE(outcome.accepted.empty());
   EXPECT_EQ(outcome.record.figures.size(), 1U) << "the describer";
-  EXPECT_EQ(outcome.record.timings.durations_ms().at(report::kWholeFrameStage).size(), kNumFrames);
+  EXPECT_EQ(outcome.record.timings.durations_ms().at(report::kWholeFrameStage).size(),
+            kNumPictures);
   return bytes;
 }
 

@@ -20,7 +20,7 @@ Plot sample() {
                  {"measured", {{1000, 0.25}, {99, 0.5}, {1000, 1.5}}, "red", PlotStyle::kMarks}}};
 }
 
-bool is_well_nested(const std::string& svg) {
+bool is_well_nested_svg(const std::string& svg) {
   const std::regex tag("<(/?)([a-z]+)[^<>]*?(/?)>");
   std::stack<std::string> open;
   for (std::sregex_iterator it(svg.begin(), svg.end(), tag), end; it != end; ++it) {
@@ -40,7 +40,7 @@ bool is_well_nested(const std::string& svg) {
 TEST(Plot, IsWellFormedWhateverItsWordsAre) {
   const std::string svg = plot_svg(sample());
   EXPECT_TRUE(svg.starts_with("<svg xmlns="));
-  EXPECT_TRUE(is_well_nested(svg)) << svg;
+  EXPECT_TRUE(is_well_nested_svg(svg)) << svg;
   EXPECT_NE(svg.find("misses &amp; hits &lt;measured&gt;"), std::string::npos) << svg;
 }
 

@@ -13,10 +13,10 @@ namespace samewhere::retrieve {
 namespace {
 
 constexpr int kNumSeeds = 50;
-constexpr std::size_t kLength = 8;  // short vectors: chance cosines above 0.6 are common
+constexpr std::size_t kShortLength = 8;  // short vectors: chance cosines above 0.6 are common
 
 std::vector<float> random_unit(core::Random& random) {
-  std::vector<float> vector(kLength);
+  std::vector<float> vector(kShortLength);
   for (float& value : vector) value = static_cast<float>(random.gaussian());
   return core::unit(vector);
 }

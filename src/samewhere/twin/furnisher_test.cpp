@@ -11,9 +11,9 @@
 namespace samewhere::twin {
 namespace {
 
-using testing::furnish;
-using testing::kWall;
-using testing::twins;
+using test::furnish;
+using test::kWall;
+using test::twins;
 
 TEST(Furnisher, EveryRectangleHasTwoUnitSidesAtRightAngles) {
   const Building building = twins(0.5);

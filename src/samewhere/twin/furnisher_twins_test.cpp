@@ -13,9 +13,9 @@
 namespace samewhere::twin {
 namespace {
 
-using testing::kWall;
-using testing::texture_of;
-using testing::twins;
+using test::kWall;
+using test::texture_of;
+using test::twins;
 
 // The first rectangles of a finish and size, one in each unit.
 std::array<Rectangle, 2> pair_of(const Building& building, Finish finish,
@@ -198,9 +198,9 @@ double alike(const Rectangle& first, const Rectangle& second) {
   }
   const RayScene rays_a(a.rectangles);
   const RayScene rays_b(b.rectangles);
-  const Eye eye(testing::kCamera);
-  const Sight query = eye.look(testing::looking({0, 0, 0}, 0.0), {&a, &rays_a});
-  const Sight match = eye.look(testing::looking({0, 0, 0}, 0.0), {&b, &rays_b});
+  const Eye eye(test::kCamera);
+  const Sight query = eye.look(test::looking({0, 0, 0}, 0.0), {&a, &rays_a});
+  const Sight match = eye.look(test::looking({0, 0, 0}, 0.0), {&b, &rays_b});
   return eye.alike(query, match, query.viewpoint);
 }
 

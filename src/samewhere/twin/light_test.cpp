@@ -69,12 +69,12 @@ TEST(Light, ASmallSignUnderALampLeavesNoBlotchesOfItsColour) {
   room.add({0.18F, 0.01F, 2.72F}, -x, z, {0.36F, 0.16F}, paint);
   const RayScene rays(room.building.rectangles);
   const Light light(room.building.rectangles, rays, kNumThreads);
-  constexpr int kWall = 2;
+  constexpr int kRoomWall = 2;
   constexpr float kStep_m = 0.1F;
   for (float up_m = 0.3F; up_m < 2.7F; up_m += kStep_m) {
     for (float right_m = 0.3F; right_m < 5.7F; right_m += kStep_m) {
-      const Colour here = light.at(kWall, {right_m, up_m});
-      const Colour next = light.at(kWall, {right_m + kStep_m, up_m});
+      const Colour here = light.at(kRoomWall, {right_m, up_m});
+      const Colour next = light.at(kRoomWall, {right_m + kStep_m, up_m});
       const float hue = here[1] / here[2];
       EXPECT_NEAR(hue, 1.0F, 0.12F) << "hue at " << right_m << ", " << up_m;
       EXPECT_NEAR(next[1] / next[2], hue, 0.04F) << "change at " << right_m << ", " << up_m;

@@ -1,4 +1,3 @@
-#include <cstring>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
@@ -7,16 +6,12 @@
 #include <samewhere/twin/camera.hpp>
 #include <samewhere/twin/people.hpp>
 #include <samewhere/twin/renderer.hpp>
+#include <samewhere/twin/test_pictures.hpp>
 #include <samewhere/twin/test_room.hpp>
 #include <samewhere/twin/walkthrough.hpp>
 
 namespace samewhere::twin {
 namespace {
-
-bool is_same(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() &&
-         std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
-}
 
 float mean_of(const cv::Vec3f& colour) { return (colour[0] + colour[1] + colour[2]) / 3.0F; }
 

@@ -12,8 +12,8 @@
 namespace samewhere::twin {
 namespace {
 
-using testing::kCamera;
-using testing::looking;
+using test::kCamera;
+using test::looking;
 
 // A wide wall across x, seen from x = 0.
 Rectangle wall_at(float x_m) {
@@ -101,14 +101,14 @@ TEST(Overlap, TheDarkSharesNothing) {
 
 // A hall of 12 m x 8 m x 3 m with cupboards standing about.
 Building hall(core::Random& random) {
-  Building building{.rectangles = testing::inside_of({12.0F, 8.0F, 3.0F})};
+  Building building{.rectangles = test::inside_of({12.0F, 8.0F, 3.0F})};
   for (int i = 0; i < 12; ++i) {
     const Eigen::Vector3f low(static_cast<float>(random.uniform(1.0, 10.0)),
                               static_cast<float>(random.uniform(1.0, 6.0)), 0.0F);
     const Eigen::Vector3f size(static_cast<float>(random.uniform(0.2, 1.0)),
                                static_cast<float>(random.uniform(0.2, 1.0)),
                                static_cast<float>(random.uniform(0.5, 2.5)));
-    for (Rectangle face : testing::inside_of(size)) {
+    for (Rectangle face : test::inside_of(size)) {
       // its back, from outside
       face.corner_m = face.at({face.size_m.x(), 0.0F}) + low;
       face.right = -face.right;

@@ -7,7 +7,7 @@
 #include <samewhere/twin/texture.hpp>
 
 // One of everything, alone and in look-alikes.
-namespace samewhere::twin::testing {
+namespace samewhere::twin::test {
 
 inline const Wall kWall{{-4.0F, 2.0F}, {4.0F, 2.0F}, 0.0F, 2.6F};
 
@@ -83,4 +83,4 @@ inline Eigen::ArrayXf texture_of(const Rectangle& rectangle, float footprint_m) 
   return values;
 }
 
-}  // namespace samewhere::twin::testing
+}  // namespace samewhere::twin::test

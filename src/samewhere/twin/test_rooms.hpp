@@ -9,7 +9,7 @@
 #include <samewhere/twin/building.hpp>
 
 // Small buildings for tests, built by hand.
-namespace samewhere::twin::testing {
+namespace samewhere::twin::test {
 
 // 62.7 degrees wide.
 inline constexpr core::PinholeRadtan kCamera{.width_px = 640,
@@ -105,4 +105,4 @@ inline void add_plate(Building& building, int unit, const std::string& name, flo
   add(building, unit, plate);
 }
 
-}  // namespace samewhere::twin::testing
+}  // namespace samewhere::twin::test

@@ -8,7 +8,7 @@
 namespace samewhere::twin {
 namespace {
 
-using testing::texture_of;
+using test::texture_of;
 
 TEST(Texture, FadesWithDistanceToItsMean) {
   for (const Finish finish : {Finish::kWall, Finish::kCarpet, Finish::kCeiling, Finish::kWood,

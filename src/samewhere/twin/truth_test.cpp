@@ -12,10 +12,10 @@ namespace samewhere::twin {
 namespace {
 
 using core::PlaceTruth;
-using testing::kCamera;
-using testing::looking;
+using test::kCamera;
+using test::looking;
 
-constexpr double kSecondRoom_m = testing::kRoomLength_m + 0.1;
+constexpr double kSecondRoom_m = test::kRoomLength_m + 0.1;
 
 // One frame a second.
 Walk walk_of(const std::vector<core::Rigid3>& poses) {
@@ -38,7 +38,7 @@ Walk walk_through_twin_rooms() {
 }
 
 TEST(Impostors, AreTwinRoomsSeenAlike) {
-  const WalkTruth truth = truth_in(testing::twin_rooms(0.0F), walk_through_twin_rooms());
+  const WalkTruth truth = truth_in(test::twin_rooms(0.0F), walk_through_twin_rooms());
   EXPECT_EQ(truth.places->at(1, 0), PlaceTruth::kDifferent);
   EXPECT_TRUE(truth.loops.empty());
   ASSERT_EQ(truth.impostors.size(), 1U);
@@ -49,14 +49,14 @@ TEST(Impostors, AreTwinRoomsSeenAlike) {
 }
 
 TEST(Impostors, AreNoneWhereEveryRoomIsDecoratedDifferently) {
-  EXPECT_TRUE(truth_in(testing::twin_rooms(1.0F), walk_through_twin_rooms()).impostors.empty());
-  EXPECT_EQ(truth_in(testing::twin_rooms(0.5F), walk_through_twin_rooms()).impostors.size(), 1U);
-  EXPECT_TRUE(truth_in(testing::twin_rooms(0.51F), walk_through_twin_rooms()).impostors.empty());
+  EXPECT_TRUE(truth_in(test::twin_rooms(1.0F), walk_through_twin_rooms()).impostors.empty());
+  EXPECT_EQ(truth_in(test::twin_rooms(0.5F), walk_through_twin_rooms()).impostors.size(), 1U);
+  EXPECT_TRUE(truth_in(test::twin_rooms(0.51F), walk_through_twin_rooms()).impostors.empty());
 
-  Building other_kind = testing::twin_rooms(0.0F);
+  Building other_kind = test::twin_rooms(0.0F);
   other_kind.units[1].kind = 1;
   EXPECT_TRUE(truth_in(other_kind, walk_through_twin_rooms()).impostors.empty());
-  Building other_walls = testing::twin_rooms(0.0F);
+  Building other_walls = test::twin_rooms(0.0F);
   for (std::size_t i = 0; i < 6; ++i) other_walls.rectangles[i].material.pattern_seed += 50;
   EXPECT_TRUE(truth_in(other_walls, walk_through_twin_rooms()).impostors.empty());
 }
@@ -65,7 +65,7 @@ TEST(Impostors, NeedTheSameViewOfTheTwin) {
   const auto num_with_second_turned_to = [](double heading_rad) {
     const Walk walk = walk_of(
         {looking({2.0, 1.5, 1.5}, 0.0), looking({2.0 + kSecondRoom_m, 1.5, 1.5}, heading_rad)});
-    return truth_in(testing::twin_rooms(0.0F), walk).impostors.size();
+    return truth_in(test::twin_rooms(0.0F), walk).impostors.size();
   };
   EXPECT_EQ(num_with_second_turned_to(0.3), 1U);
   EXPECT_EQ(num_with_second_turned_to(0.9), 0U) << "more than 45 degrees";
@@ -74,8 +74,8 @@ TEST(Impostors, NeedTheSameViewOfTheTwin) {
 
 TEST(Impostors, FollowATwinThatIsTurnedRound) {
   Building building;
-  testing::add_room(building, {}, 0.0F);
-  testing::add_room(building, testing::turned_and_moved(kPi, {10.0, 3.0, 0.0}), 0.0F);
+  test::add_room(building, {}, 0.0F);
+  test::add_room(building, test::turned_and_moved(kPi, {10.0, 3.0, 0.0}), 0.0F);
   const core::Rigid3 in_first = looking({1.0, 1.2, 1.5}, 0.2);
   const core::Rigid3 its_twin = building.units[1].world_from_unit * in_first;
   EXPECT_EQ(truth_in(building, walk_of({in_first, its_twin})).impostors.size(), 1U);
@@ -90,9 +90,9 @@ Building row_of_bays(int count) {
   Building building;
   for (int bay = 0; bay < count; ++bay) {
     building.units.push_back(
-        {.kind = 4, .world_from_unit = testing::turned_and_moved(0.0, {kBay_m * bay, 0, 0})});
-    const auto sides = testing::inside_of({kBay_m, 2.0F, 2.6F});
-    for (std::size_t i = 2; i < sides.size(); ++i) testing::add(building, bay, sides[i]);
+        {.kind = 4, .world_from_unit = test::turned_and_moved(0.0, {kBay_m * bay, 0, 0})});
+    const auto sides = test::inside_of({kBay_m, 2.0F, 2.6F});
+    for (std::size_t i = 2; i < sides.size(); ++i) test::add(building, bay, sides[i]);
     const auto low_x = kBay_m * static_cast<float>(bay);
     building.areas.push_back({.name = "corridor",
                               .unit = bay,
@@ -125,7 +125,7 @@ Walk twice_after(const core::Rigid3& pose, double seconds) {
 }
 
 TEST(Loops, AreReturnsAfterTenSeconds) {
-  const Building building = testing::twin_rooms(0.0F);
+  const Building building = test::twin_rooms(0.0F);
   const core::Rigid3 pose = looking({1.0, 1.5, 1.3}, 0.0);
   EXPECT_TRUE(truth_in(building, twice_after(pose, 9.9)).loops.empty());
   const WalkTruth truth = truth_in(building, twice_after(pose, 150.0 / 15.0));
@@ -138,8 +138,8 @@ TEST(Loops, AreReturnsAfterTenSeconds) {
 }
 
 TEST(Loops, CanBeConfirmedByAUniqueThingThatBothViewsShow) {
-  Building building = testing::twin_rooms(0.0F);
-  testing::add_plate(building, 0, "door plate 1", 0.2F);
+  Building building = test::twin_rooms(0.0F);
+  test::add_plate(building, 0, "door plate 1", 0.2F);
   const core::Rigid3 pose = looking({1.0, 1.5, 1.3}, 0.0);
   const WalkTruth truth = truth_in(building, twice_after(pose, 20.0));
   ASSERT_EQ(truth.loops.size(), 1U);
@@ -170,7 +170,7 @@ TEST(Revisits, AreStaysInAKnownPlaceThatCanBeConfirmedSomewhere) {
 
 TEST(Frames, AreInTheAreaThatHoldsThemOrTheNearest) {
   const WalkTruth truth =
-      truth_in(testing::twin_rooms(0.0F),
+      truth_in(test::twin_rooms(0.0F),
                walk_of({looking({1, 1, 1}, 0), looking({7, 1, 1}, 0), looking({4.06, 1, 1}, 0)}));
   EXPECT_EQ(truth.frames[0].room, "room 0");
   EXPECT_EQ(truth.frames[0].floor, 0);
@@ -181,7 +181,7 @@ TEST(Frames, AreInTheAreaThatHoldsThemOrTheNearest) {
 }
 
 TEST(Frames, OfNoAreaHaveNoUnit) {
-  Building building = testing::twin_rooms(0.0F);
+  Building building = test::twin_rooms(0.0F);
   building.areas.clear();
   const WalkTruth truth = truth_in(building, walk_through_twin_rooms());
   EXPECT_EQ(truth.frames[1].room, "");
@@ -190,9 +190,9 @@ TEST(Frames, OfNoAreaHaveNoUnit) {
 }
 
 TEST(SecondVisit, IsTheSamePlaceAfterTheDark) {
-  const Building first = testing::twin_rooms(0.0F);
+  const Building first = test::twin_rooms(0.0F);
   Building second = first;
-  testing::add_plate(second, 0, "new poster", 1.0F);
+  test::add_plate(second, 0, "new poster", 1.0F);
   const RayScene rays_of_first(first.rectangles);
   const RayScene rays_of_second(second.rectangles);
   const core::Rigid3 pose = looking({1.0, 1.5, 1.3}, 0.0);
@@ -249,7 +249,7 @@ void expect_no_contradiction(const WalkTruth& truth) {
 
 TEST(WalkTruth, IsFreeOfContradictionsAndTheSameBackwards) {
   constexpr int kNumFrames = 60;
-  const Building building = testing::twin_rooms(0.2F);
+  const Building building = test::twin_rooms(0.2F);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     core::Random random(seed);
@@ -277,7 +277,7 @@ TEST(WalkTruth, OfALongWalkIsToldForEveryFifteenthFrame) {
     walk.poses.push_back({i / 15.0, looking({room_m + 1.0, 1.5, 1.5}, i / 200.0)});
     walk.visit_of_frame.push_back(0);
   }
-  const WalkTruth truth = truth_in(testing::twin_rooms(0.0F), walk);
+  const WalkTruth truth = truth_in(test::twin_rooms(0.0F), walk);
   EXPECT_EQ(truth.stride_frames, 15);
   EXPECT_EQ(truth.frames.size(), walk.poses.size());
   EXPECT_TRUE(truth.overlap.empty());

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/twin/camera.hpp>
 #include <samewhere/twin/studio.hpp>
+#include <samewhere/twin/test_pictures.hpp>
 #include <samewhere/twin/twin.hpp>
 
 namespace samewhere::twin {
@@ -24,11 +24,6 @@ std::vector<core::Frame> render(const std::string& spec, const Config& config) {
   const auto source = open_twin(spec, config);
   while (auto frame = source->next()) frames.push_back(std::move(*frame));
   return frames;
-}
-
-bool is_same(const cv::Mat& a, const cv::Mat& b) {
-  if (a.size() != b.size() || a.type() != b.type()) return false;
-  return std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
 }
 
 double grey_at(const cv::Mat& picture, const Eigen::Vector2d& pixel) {

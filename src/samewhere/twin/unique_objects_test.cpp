@@ -9,16 +9,16 @@
 namespace samewhere::twin {
 namespace {
 
-using testing::kCamera;
-using testing::looking;
+using test::kCamera;
+using test::looking;
 
 constexpr double kPlate_x_m = 3.99;
 
 // A room with a plate of 20 cm on its far wall.
 Building room_with_plate() {
   Building building;
-  testing::add_room(building, {}, 0.0F);
-  testing::add_plate(building, 0, "door plate 7", 0.2F);
+  test::add_room(building, {}, 0.0F);
+  test::add_plate(building, 0, "door plate 7", 0.2F);
   return building;
 }
 
