@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "ledger_figures.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -68,50 +69,10 @@ void list(const LedgerCommand& command) {
   fmt::print("{}", lines_of(wanted));
 }
 
-void add_figure(std::vector<report::Figure>& figures, const char* name, const char* unit,
-                std::optional<double> value) {
-  figures.push_back({name, value ? fmt::format("{:.4g}{}", *value, unit) : "unmeasured"});
-}
-
-std::vector<report::Figure> figures_of(const core::LedgerRow& row) {
-  const core::Evidence& evidence = core::evidence_of(row.verdict);
-  std::vector<report::Figure> figures = {
-      {"query / match", fmt::format("frame {} / frame {}", row.candidate.query.index(),
-                                    report::name_of_match(row.candidate))},
-      {"verdict", fmt::format("{}, {}", core::name_of(row.verdict), core::stage_of(row.verdict))},
-      {"why", core::reason_of(row.verdict)}};
-  const auto& geometry = evidence.geometry;
-  const auto of_geometry = [&](double core::GeometryEvidence::*field) {
-    return geometry ? std::optional((*geometry).*field) : std::nullopt;
-  };
-  add_figure(figures, "similarity", "", evidence.similarity);
-  add_figure(figures, "matches", "",
-             geometry ? std::optional<double>(geometry->num_matches) : std::nullopt);
-  add_figure(figures, "inliers", "",
-             geometry ? std::optional<double>(geometry->num_inliers) : std::nullopt);
-  add_figure(figures, "inliers of matches", "", of_geometry(&core::GeometryEvidence::inlier_ratio));
-  add_figure(figures, "share of the picture", "",
-             of_geometry(&core::GeometryEvidence::spread_ratio));
-  add_figure(figures, "reprojection error", " px",
-             of_geometry(&core::GeometryEvidence::reprojection_rmse_px));
-  const auto apart_m = geometry ? geometry->disagreement_m : std::nullopt;
-  if (apart_m && std::isinf(*apart_m)) {
-    figures.push_back({"poses of both views apart", "one of them finds none"});
-  } else {
-    add_figure(figures, "poses of both views apart", " m", apart_m);
-  }
-  const auto& odometry = evidence.odometry;
-  add_figure(figures, "moves the camera by", " m",
-             odometry ? std::optional(odometry->correction_m) : std::nullopt);
-  add_figure(figures, "chi-square of odometry", "",
-             odometry ? std::optional(odometry->mahalanobis_squared) : std::nullopt);
-  return figures;
-}
-
 void show(const LedgerCommand& command) {
   const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
   const core::LedgerRow& row = pipeline::row_of(ledger, command.candidate, command.folder);
-  print_figures(figures_of(row));
+  print_figures(figures_of(row, pipeline::config_of_run(command.folder).verify));
   if (command.picture.empty()) return;
   core::write_file(command.picture, report::pair_svg(pipeline::pair_of_run(command.folder, row)));
   fmt::print("{}\n", command.picture);

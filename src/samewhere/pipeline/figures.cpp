@@ -76,14 +76,31 @@ evaluate::AcceptedLoop loop_of(const core::LedgerRow& row, const StampOf& stamp_
   return loop;
 }
 
-// How far it would move the query from where the trajectory has it.
-std::optional<double> distance_m(const evaluate::AcceptedLoop& loop,
-                                 const core::Trajectory& trajectory) {
-  const auto world_from_query = evaluate::truth_at(trajectory, loop.query_stamp_s);
-  const auto world_from_match = evaluate::truth_at(trajectory, loop.match_stamp_s);
-  if (!loop.match_from_query || !world_from_query || !world_from_match) return std::nullopt;
-  const core::Rigid3 placed = *world_from_match * *loop.match_from_query;
-  return (placed.translation - world_from_query->translation).norm();
+// Who was found again, from one place that the judge told of his view.
+struct FoundAgain {
+  evaluate::AcceptedLoop loop;  // its pose: where the trajectory has him, whatever the judge said
+  double apart_m = 0.0;         // from where the judge would have him
+};
+
+std::optional<FoundAgain> found_again(const evaluate::AcceptedLoop& told,
+                                      const core::Trajectory& trajectory) {
+  const auto world_from_query = evaluate::truth_at(trajectory, told.query_stamp_s);
+  const auto world_from_match = evaluate::truth_at(trajectory, told.match_stamp_s);
+  if (!told.match_from_query || !world_from_query || !world_from_match) return std::nullopt;
+  FoundAgain found{told, 0.0};
+  found.loop.match_from_query = inverse(*world_from_match) * *world_from_query;
+  found.apart_m =
+      (told.match_from_query->translation - found.loop.match_from_query->translation).norm();
+  return found;
+}
+
+// Of places where he is, the one seen first: it is the visit that he joins. Else the nearest.
+bool speaks_rather(const FoundAgain& a, const FoundAgain& b) {
+  constexpr double kThere_m = 0.2;
+  const bool is_a_there = a.apart_m <= kThere_m;
+  const bool is_b_there = b.apart_m <= kThere_m;
+  if (is_a_there && is_b_there) return a.loop.match < b.loop.match;
+  return a.apart_m < b.apart_m;
 }
 
 // Whether an earlier visit was joined by who was found again in this one.
@@ -128,19 +145,18 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
 
 void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
                      const std::set<core::FrameId>& resumed, SlamFindings& findings) {
-  std::map<core::FrameId, std::pair<double, evaluate::AcceptedLoop>> nearest;
+  std::map<core::FrameId, FoundAgain> best;
   for (const auto* row : report::final_rows(ledger)) {
     const core::Candidate& candidate = row->candidate;
     const bool is_told = candidate.is_lost && core::is_loop(row->verdict) &&
                          candidate.match.session() == candidate.query.session();
     if (!is_told || !resumed.contains(candidate.query)) continue;
-    const evaluate::AcceptedLoop loop = loop_of(*row, stamp_of);
-    const auto distance = distance_m(loop, findings.trajectory);
-    if (!distance) continue;
-    const auto [it, is_first] = nearest.try_emplace(candidate.query, *distance, loop);
-    if (!is_first && *distance < it->second.first) it->second = {*distance, loop};
+    const auto found = found_again(loop_of(*row, stamp_of), findings.trajectory);
+    if (!found) continue;
+    const auto [it, is_first] = best.try_emplace(candidate.query, *found);
+    if (!is_first && speaks_rather(*found, it->second)) it->second = *found;
   }
-  for (const auto& [frame, found] : nearest) findings.found_again.push_back(found.second);
+  for (const auto& [frame, found] : best) findings.found_again.push_back(found.loop);
 }
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {

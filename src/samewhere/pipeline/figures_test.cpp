@@ -84,6 +84,23 @@ TEST_F(LostAndFound, InItsCopyWhichIsWrong) {
   EXPECT_EQ(figure(evaluation, kRejoined), "0 of 1");
 }
 
+// The place was told of an earlier view, and this one only of the right one.
+TEST_F(LostAndFound, WhereHeIsCountsAndNotWhatTheJudgeSays) {
+  recognised(12, 0, 2.0);
+  const SlamEvaluation evaluation = evaluated_if_found_at(7.0);
+  EXPECT_EQ(figure(evaluation, kFound), "0 / 1 / 0");
+  EXPECT_EQ(figure(evaluation, kRejoined), "0 of 1");
+}
+
+TEST_F(LostAndFound, OfTwoVisitsTheEarlierIsJoined) {
+  truth_.revisits = {{8, 15}};
+  recognised(12, 9, -7.0);
+  recognised(12, 0, 2.1);
+  const SlamEvaluation evaluation = evaluated_if_found_at(2.0);
+  EXPECT_EQ(figure(evaluation, kFound), "1 / 0 / 0");
+  EXPECT_EQ(figure(evaluation, kRejoined), "1 of 1");
+}
+
 TEST_F(LostAndFound, WhatAFrameSaysThatIsStillLostIsNotAsked) {
   recognised(11, 0, 1.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(2.0);

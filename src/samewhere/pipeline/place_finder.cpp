@@ -205,18 +205,14 @@ void PlaceFinder::record(const features::View& view, const scene::MapVersion& ma
   }
 }
 
-std::vector<Place> PlaceFinder::unheard_of(const std::vector<Place>& places,
-                                           const Question& question) const {
-  std::vector<Place> unheard;
-  for (const Place& place : places) {
-    if (!is_recognised_within_reach(place, question.view, question.is_within_reach)) continue;
-    const bool is_heard = std::ranges::any_of(hypotheses_, [&](const Hypothesis& hypothesis) {
+bool PlaceFinder::has_unheard(const std::vector<Place>& places, const Question& question) const {
+  return std::ranges::any_of(places, [&](const Place& place) {
+    if (!is_recognised_within_reach(place, question.view, question.is_within_reach)) return false;
+    return std::ranges::none_of(hypotheses_, [&](const Hypothesis& hypothesis) {
       return hypothesis.found && are_one_place(question.map, hypothesis.place, place,
                                                median_distance(*hypothesis.found));
     });
-    if (!is_heard) unheard.push_back(place);
-  }
-  return unheard;
+  });
 }
 
 bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const {
@@ -281,14 +277,9 @@ std::optional<FoundPlace> PlaceFinder::look(const features::View& view,
   if (hypotheses_.empty()) return std::nullopt;
   record(view, map);
   merge(map);
-  const std::vector<Place> unheard = unheard_of(places, question);
+  if (has_unheard(places, question)) return std::nullopt;
   for (Hypothesis& hypothesis : hypotheses_) {
     if (!is_proven(hypothesis, proof)) continue;
-    const double distance_m = median_distance(*hypothesis.found);
-    const bool is_there_alone = std::ranges::all_of(unheard, [&](const Place& other) {
-      return are_one_place(map, hypothesis.place, other, distance_m);
-    });
-    if (!is_there_alone) continue;
     FoundPlace found = std::move(*hypothesis.found);
     forget();
     return found;

@@ -34,8 +34,8 @@ struct Proof {
 // views, and no other about as many inliers, or as many of the landmarks that should be in sight
 // there (track.lost.max_rival_ratio). Until then nobody can tell; the places are kept, for whoever
 // walks on learns in the end which of them goes on as the views do. A place that the judge
-// recognised in the view, though nothing can be tracked there, is another place all the same: while
-// there is one, nobody can tell either.
+// recognised in the view, though nothing can be tracked there or its map shows too little, is
+// another place all the same: while there is one, nobody can tell either.
 class PlaceFinder {
  public:
   // Both outlive it.
@@ -89,8 +89,8 @@ class PlaceFinder {
                       const scene::MapVersion& map) const;
   void record(const features::View& view, const scene::MapVersion& map);
   void merge(const scene::MapVersion& map);
-  // Recognised, where the judge says that it is, and none of the hypotheses.
-  std::vector<Place> unheard_of(const std::vector<Place>& places, const Question& question) const;
+  // Whether the judge recognised one of them where no hypothesis is.
+  bool has_unheard(const std::vector<Place>& places, const Question& question) const;
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
   bool is_proven(const Hypothesis& hypothesis, const Proof& proof) const;
 

@@ -1,12 +1,9 @@
-#include <set>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <samewhere/core/csv.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
@@ -15,48 +12,13 @@
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/report/frames.hpp>
 #include <samewhere/report/loops_read.hpp>
 #include <samewhere/report/timing_json.hpp>
 #include <samewhere/scene/map_file.hpp>
 
 namespace samewhere::pipeline {
 namespace {
-
-// What frames.csv says of all frames, by position.
-struct Frames {
-  std::vector<double> stamps_s;
-  std::set<core::FrameId> resumed;
-};
-
-// The fourth column, told from the end: the third, a name, may hold commas.
-std::string_view status_of(std::string_view record) {
-  constexpr int kColumnsBehind = 10;
-  std::size_t end = record.size();
-  for (int i = 0; i < kColumnsBehind && end != std::string_view::npos; ++i)
-    end = end == 0 ? std::string_view::npos : record.rfind(',', end - 1);
-  if (end == std::string_view::npos) return {};
-  const std::string_view before = record.substr(0, end);
-  return before.substr(before.rfind(',') + 1);
-}
-
-Frames read_frames(const std::filesystem::path& path) {
-  const std::string text = core::read_file(path);
-  Frames frames;
-  bool is_heading = true;
-  for (const std::string_view record : core::csv_records(text)) {
-    if (std::exchange(is_heading, false)) continue;
-    const auto first = record.find(',');
-    if (status_of(record) == name_of(core::FrameStatus::kResumed))
-      frames.resumed.insert(core::FrameId(frames.stamps_s.size()));
-    try {
-      frames.stamps_s.push_back(std::stod(std::string(record.substr(first + 1))));
-    } catch (const std::exception&) {
-      throw core::InputError(fmt::format("{}, line {}: expected index,stamp,...", path.string(),
-                                         frames.stamps_s.size() + 2));
-    }
-  }
-  return frames;
-}
 
 std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
   std::istringstream lines(core::read_file(path));
@@ -77,7 +39,7 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
 }
 
 SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_scale_free) {
-  const Frames frames = read_frames(folder / "frames.csv");
+  const report::FrameTimes frames = report::read_frames_csv(folder / "frames.csv");
   SlamFindings findings;
   findings.num_frames = static_cast<int>(frames.stamps_s.size());
   findings.trajectory = core::read_tum(folder / "trajectory.tum");

@@ -2,14 +2,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
+#include <set>
 #include <sstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <turbojpeg.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/report/frames.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/report/ply.hpp>
@@ -44,6 +48,33 @@ TEST(FramesCsv, QuotesNamesThatNeedIt) {
   frame.pose.reference_keyframe = {};
   EXPECT_TRUE(
       frames_csv({frame}).ends_with("0,0.000000,\"a,\"\"b\"\".png\",starting,0,0,,,,,,,,\n"));
+}
+
+TEST(FramesCsv, IsReadBackWhateverTheNames) {
+  std::vector<FrameRecord> frames;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    frames.push_back(frame_record(static_cast<int>(i), core::Rigid3{}));
+    frames.back().name = "a,\"resumed,b\",\n.png";
+  }
+  frames[1].pose.status = core::FrameStatus::kResumed;
+  const auto path = std::filesystem::temp_directory_path() / "samewhere_frames_read_back.csv";
+  core::write_file(path, frames_csv(frames));
+  const FrameTimes read = read_frames_csv(path);
+  std::filesystem::remove(path);
+  ASSERT_EQ(read.stamps_s.size(), 3U);
+  EXPECT_EQ(read.stamps_s[2], frames[2].pose.stamp_s);
+  EXPECT_EQ(read.resumed, std::set{core::FrameId(1)});
+}
+
+TEST(FramesCsv, ALineThatIsNoneIsNamed) {
+  const auto path = std::filesystem::temp_directory_path() / "samewhere_no_frames.csv";
+  for (const char* line : {"0,1.0\n", "0,soon,a.png,resumed,1,9,0,0,0,0,0,0,0,1\n"}) {
+    core::write_file(path, std::string("index,stamp_s\n") + line);
+    EXPECT_THAT([&] { read_frames_csv(path); },
+                testing::ThrowsMessage<core::InputError>(testing::HasSubstr(
+                    "no_frames.csv, line 2: expected index,stamp_s,name,status")));
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(Ply, HoldsTheBytesThatItsHeaderPromises) {

@@ -1,16 +1,23 @@
+#include <algorithm>
+#include <exception>
 #include <iterator>
+#include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/csv.hpp>
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/report/frames.hpp>
 
 namespace samewhere::report {
 namespace {
 
 constexpr int kPoseFields = 7;
+constexpr std::string_view kColumns =
+    "index,stamp_s,name,status,is_measured,num_inliers,reference_keyframe,tx,ty,tz,qx,qy,qz,qw";
 
 std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
   if (!world_from_camera) return ",,,,,,";
@@ -18,6 +25,15 @@ std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
   const Eigen::Quaterniond& q = world_from_camera->rotation;
   return fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}", t.x(), t.y(), t.z(), q.x(),
                      q.y(), q.z(), q.w());
+}
+
+// Told from the end, for the name before it may hold commas. Throws if there are too few fields.
+std::string_view status_of(std::string_view record) {
+  constexpr auto kBehind = std::ranges::count(kColumns.substr(kColumns.find("status")), ',');
+  constexpr auto kFields = std::ranges::count(kColumns, ',') + 1;
+  if (std::ranges::count(record, ',') + 1 < kFields) throw std::invalid_argument("short");
+  for (int i = 0; i < kBehind; ++i) record = record.substr(0, record.rfind(','));
+  return record.substr(record.rfind(',') + 1);
 }
 
 // All fields of a record but those of the pose.
@@ -37,8 +53,7 @@ core::Trajectory measured_trajectory(const std::vector<FrameRecord>& frames) {
 }
 
 std::string frames_csv(const std::vector<FrameRecord>& frames) {
-  std::string text =
-      "index,stamp_s,name,status,is_measured,num_inliers,reference_keyframe,tx,ty,tz,qx,qy,qz,qw\n";
+  std::string text = fmt::format("{}\n", kColumns);
   for (const FrameRecord& frame : frames) {
     const core::FramePose& pose = frame.pose;
     const std::string keyframe = pose.reference_keyframe.is_valid()
@@ -50,6 +65,25 @@ std::string frames_csv(const std::vector<FrameRecord>& frames) {
                    pose_fields(frame.world_from_camera));
   }
   return text;
+}
+
+FrameTimes read_frames_csv(const std::filesystem::path& path) {
+  const std::string text = core::read_file(path);
+  FrameTimes frames;
+  bool is_heading = true;
+  for (const std::string_view record : core::csv_records(text)) {
+    if (std::exchange(is_heading, false)) continue;
+    const core::FrameId frame(frames.stamps_s.size());
+    try {
+      if (status_of(record) == core::name_of(core::FrameStatus::kResumed))
+        frames.resumed.insert(frame);
+      frames.stamps_s.push_back(std::stod(std::string(record.substr(record.find(',') + 1))));
+    } catch (const std::exception&) {
+      throw core::InputError(fmt::format("{}, line {}: expected {}", path.string(),
+                                         frames.stamps_s.size() + 2, kColumns));
+    }
+  }
+  return frames;
 }
 
 std::string with_poses(const std::string& frames_csv, const core::Trajectory& trajectory) {

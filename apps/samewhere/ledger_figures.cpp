@@ -1,0 +1,110 @@
+#include "ledger_figures.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <samewhere/report/loops.hpp>
+
+namespace samewhere::app {
+namespace {
+
+class Figures {
+ public:
+  // `bar`: what it was held against; empty if nothing.
+  void add(const char* name, std::optional<double> value, const char* unit = "",
+           const std::string& bar = {}) {
+    add(name, value ? fmt::format("{:.4g}{}{}", *value, unit, bar) : "unmeasured");
+  }
+  void add(const char* name, std::string value) { figures_.push_back({name, std::move(value)}); }
+
+  std::vector<report::Figure> taken() { return std::move(figures_); }
+
+ private:
+  std::vector<report::Figure> figures_;
+};
+
+std::string at_least(double bar) { return fmt::format(" (at least {:.4g})", bar); }
+std::string at_most(double bar) { return fmt::format(" (at most {:.4g})", bar); }
+
+void add_geometry(const std::optional<core::GeometryEvidence>& geometry,
+                  const verify::Config& config, Figures& figures) {
+  const auto value = [&](auto core::GeometryEvidence::*field) {
+    return geometry ? std::optional<double>((*geometry).*field) : std::nullopt;
+  };
+  using Geometry = core::GeometryEvidence;
+  figures.add("matches", value(&Geometry::num_matches), "", at_least(config.min_matches));
+  figures.add("inliers", value(&Geometry::num_inliers), "", at_least(config.min_inliers));
+  figures.add("inliers of matches", value(&Geometry::inlier_ratio));
+  figures.add("share of the picture", value(&Geometry::spread_ratio), "",
+              at_least(config.min_spread_ratio));
+  figures.add("share seen by both", value(&Geometry::overlap_ratio));
+  figures.add("reprojection error", value(&Geometry::reprojection_rmse_px), " px");
+  const auto apart_m = geometry ? geometry->disagreement_m : std::nullopt;
+  if (apart_m && std::isinf(*apart_m)) {
+    figures.add("poses of both views apart", "one of them finds none");
+  } else {
+    figures.add("poses of both views apart", apart_m, " m", at_most(config.max_disagreement_m));
+  }
+}
+
+void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
+                  const verify::Config& config, Figures& figures) {
+  figures.add("moves the camera by",
+              odometry ? std::optional(odometry->correction_m) : std::nullopt, " m");
+  figures.add("chi-square of odometry",
+              odometry ? std::optional(odometry->mahalanobis_squared) : std::nullopt, "",
+              at_most(config.max_odometry_chi_square));
+}
+
+std::string text_of(const core::RivalEvidence& rival, const verify::Config& config) {
+  std::string text =
+      fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}", rival.frame.index(),
+                  rival.apart_m, rival.mahalanobis_squared, at_most(config.max_rival_chi_square));
+  if (rival.gain) {
+    text += fmt::format("; odometry's gain over it {:.4g}{}", *rival.gain,
+                        at_least(config.min_rival_gain));
+  }
+  return text;
+}
+
+std::string text_of(const core::OtherPlaceEvidence& other, const verify::Config& config) {
+  return fmt::format("frame {}, {:.2f} m away, {} inliers (at most {:.0f} % of those here)",
+                     other.frame.index(), other.apart_m, other.num_inliers,
+                     100.0 * config.max_other_place_ratio);
+}
+
+std::string text_of(const core::SequenceEvidence& sequence, const verify::Config& config) {
+  return fmt::format("{}{}, {} inliers in all", sequence.num_views, at_least(config.min_views),
+                     sequence.num_inliers);
+}
+
+}  // namespace
+
+std::vector<report::Figure> figures_of(const core::LedgerRow& row, const verify::Config& config) {
+  const core::Evidence& evidence = core::evidence_of(row.verdict);
+  const auto text = [&](const auto& measured) {
+    return measured ? text_of(*measured, config) : "unmeasured";
+  };
+  Figures figures;
+  figures.add("query / match", fmt::format("frame {} / frame {}", row.candidate.query.index(),
+                                           report::name_of_match(row.candidate)));
+  figures.add("verdict",
+              fmt::format("{}, {}", core::name_of(row.verdict), core::stage_of(row.verdict)));
+  figures.add("why", core::reason_of(row.verdict));
+  figures.add("similarity", evidence.similarity, "",
+              config.min_similarity > -1.0
+                  ? fmt::format(" (more than {:.4g})", config.min_similarity)
+                  : std::string());
+  add_geometry(evidence.geometry, config, figures);
+  add_odometry(evidence.odometry, config, figures);
+  figures.add("where the last loop has it", text(evidence.rival));
+  figures.add("another place that it shows", text(evidence.other_place));
+  figures.add("views in a row", text(evidence.sequence));
+  return figures.taken();
+}
+
+}  // namespace samewhere::app
