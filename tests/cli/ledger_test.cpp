@@ -51,6 +51,7 @@ TEST_F(LedgerCommand, ShowsAllThatWasMeasuredOfOne) {
   const Outcome shown = run("show 1");
   EXPECT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("9.8 m"));
+  EXPECT_THAT(shown.out, HasSubstr("(at most 16.81)")) << "the bar of the run's config";
   EXPECT_THAT(run("show 0").out, HasSubstr("unmeasured")) << "odometry never spoke";
   const Outcome none = run("show 2");
   EXPECT_EQ(none.exit_code, 2);
