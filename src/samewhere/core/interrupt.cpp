@@ -16,6 +16,7 @@ void note_interrupt(int /*signal*/) {
 }  // namespace
 
 void catch_interrupts() {
+  interrupted = 0;
   std::signal(SIGINT, note_interrupt);
   std::signal(SIGTERM, note_interrupt);
 }

@@ -5,7 +5,8 @@
 namespace samewhere::core {
 
 // After this, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag: long loops look at it between
-// frames, stop, and their files are finished. A second one ends the process at once.
+// frames, stop, and their files are finished. A second one ends the process at once. One that was
+// caught before is forgotten.
 void catch_interrupts();
 bool is_interrupted();
 

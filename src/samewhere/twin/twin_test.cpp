@@ -121,7 +121,6 @@ TEST(Twin, TruthIsMadeOnceAndTellsWhatTheInertialUnitDoes) {
   }
 }
 
-// At the end an interrupt, which cannot be taken back within a process.
 TEST(Twin, WhoWatchesTheTruthMayEndIt) {
   const Walkthrough walk(parse_spec("twin:office-loop?seed=3"), {.num_frames = 3});
   const auto refuse = [](int /*num_judged*/, int /*num_pairs*/) {
@@ -137,6 +136,7 @@ TEST(Twin, WhoWatchesTheTruthMayEndIt) {
   core::catch_interrupts();
   std::raise(SIGINT);
   EXPECT_THROW(watched_truth(other), core::Interrupted);
+  core::catch_interrupts();  // other tests go on
 }
 
 TEST(Twin, TheSettingsSayHowManyThreads) {
