@@ -7,10 +7,12 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <turbojpeg.h>
+#include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -57,7 +59,8 @@ TEST(FramesCsv, IsReadBackWhateverTheNames) {
     frames.back().name = "a,\"resumed,b\",\n.png";
   }
   frames[1].pose.status = core::FrameStatus::kResumed;
-  const auto path = std::filesystem::temp_directory_path() / "samewhere_frames_read_back.csv";
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("samewhere_{}_frames.csv", getpid());
   core::write_file(path, frames_csv(frames));
   const FrameTimes read = read_frames_csv(path);
   std::filesystem::remove(path);
@@ -67,12 +70,13 @@ TEST(FramesCsv, IsReadBackWhateverTheNames) {
 }
 
 TEST(FramesCsv, ALineThatIsNoneIsNamed) {
-  const auto path = std::filesystem::temp_directory_path() / "samewhere_no_frames.csv";
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("samewhere_{}_no_frames.csv", getpid());
   for (const char* line : {"0,1.0\n", "0,soon,a.png,resumed,1,9,0,0,0,0,0,0,0,1\n"}) {
     core::write_file(path, std::string("index,stamp_s\n") + line);
     EXPECT_THAT([&] { read_frames_csv(path); },
                 testing::ThrowsMessage<core::InputError>(testing::HasSubstr(
-                    "no_frames.csv, line 2: expected index,stamp_s,name,status")));
+                    "_no_frames.csv, line 2: expected index,stamp_s,name,status")));
   }
   std::filesystem::remove(path);
 }
