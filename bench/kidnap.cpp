@@ -1,5 +1,6 @@
 // kidnap: put down somewhere with a map in hand, does one find out where, and never somewhere else?
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -7,13 +8,16 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "program.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
+#include <samewhere/pipeline/map_saver.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/scene/map_file.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -45,11 +49,33 @@ Walk walk_of(const pipeline::Config& config) {
   return walk;
 }
 
+// A file of one's own, gone in the end.
+struct PassingFile {
+  PassingFile() { std::filesystem::remove(path); }
+  PassingFile(const PassingFile&) = delete;
+  PassingFile& operator=(const PassingFile&) = delete;
+  ~PassingFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("samewhere_kidnap_{}.sw", getpid());
+};
+
+// As somebody has it who comes another day: saved, and opened again.
 scene::StoredMap map_of(const Walk& walk, int num_frames, const pipeline::Config& config) {
   pipeline::Slam slam(config);
   for (int i = 0; i < num_frames; ++i) slam.feed(walk.frames[static_cast<std::size_t>(i)]);
   slam.finish();
-  return {slam.map(), {.frames = slam.frames(), .descriptors = slam.descriptors()}};
+  const scene::MapHeader header =
+      pipeline::map_header(config, *walk.frames.front().rig, slam.describer_checksum());
+  const PassingFile file;
+  scene::MapFile::create(file.path, header)
+      .commit(slam.map(), {.frames = slam.frames(), .descriptors = slam.descriptors()});
+  scene::MapFile opened = scene::MapFile::open(file.path);
+  opened.require_same_settings(header);
+  return opened.load();
 }
 
 // `count` of them, evenly spread.
@@ -184,9 +210,9 @@ std::function<void()> set_up(CLI::App& app) {
   const auto settings = std::make_shared<Settings>();
   app.name("kidnap");
   app.description(
-      "A walk makes a map of what it sees before it comes back. Then one is put down, with that "
-      "map, at frames of the way back; and, with a map of its first half, where only a look-alike "
-      "is in it.");
+      "A walk makes a map of what it sees before it comes back, which is saved. Then one is put "
+      "down, with that map opened again, at frames of the way back; and, with a map of its first "
+      "half, where only a look-alike is in it.");
   app.add_option("--preset", settings->preset, "of the built-in world");
   app.add_option("--similarity", settings->similarity, "of places of one kind, 0 to 1");
   app.add_option("--seed", settings->first_seed, "of the first walk");

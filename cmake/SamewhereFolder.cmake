@@ -3,6 +3,9 @@
 # One folder of src/samewhere is one library `samewhere_NAME` (alias samewhere::NAME): its *.cpp, linked to
 # nothing but LINKS. Its *_test.cpp become `samewhere_NAME_test`. Which folder may link which is the layering of
 # docs/design.md; `./run lint` checks it on the #includes.
+#
+# samewhere_plain_folder(NAME LINKS target...): the same for a folder that no sanitizer needs to watch. A sanitized build takes
+# the library from SAMEWHERE_PLAIN_BUILD, or else builds it without them.
 
 add_library(samewhere_options INTERFACE)
 target_compile_options(samewhere_options INTERFACE
@@ -42,6 +45,25 @@ function(samewhere_folder NAME)
   if(SAMEWHERE_TESTS AND tests)
     samewhere_test(samewhere_${NAME}_test SOURCES ${tests} LINKS samewhere::${NAME} ${FOLDER_TEST_LINKS})
   endif()
+endfunction()
+
+function(samewhere_plain_folder NAME)
+  if(NOT SAMEWHERE_SANITIZE OR NOT SAMEWHERE_PLAIN_BUILD)
+    samewhere_folder(${NAME} ${ARGN})
+    if(SAMEWHERE_SANITIZE)
+      target_compile_options(samewhere_${NAME} PRIVATE -fno-sanitize=all)
+      # a compiled header holds only for files with the same sanitizers
+      set_target_properties(samewhere_${NAME} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+    endif()
+    return()
+  endif()
+  cmake_parse_arguments(FOLDER "" "" "LINKS" ${ARGN})
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  add_library(samewhere_${NAME} STATIC IMPORTED GLOBAL)
+  set_target_properties(samewhere_${NAME} PROPERTIES
+    IMPORTED_LOCATION ${SAMEWHERE_PLAIN_BUILD}/${folder}/${CMAKE_STATIC_LIBRARY_PREFIX}samewhere_${NAME}${CMAKE_STATIC_LIBRARY_SUFFIX})
+  target_link_libraries(samewhere_${NAME} INTERFACE samewhere_options ${FOLDER_LINKS})
+  add_library(samewhere::${NAME} ALIAS samewhere_${NAME})
 endfunction()
 
 # samewhere_test(NAME SOURCES file... LINKS target...): one GoogleTest program, whose cases ctest runs and counts one by one.
