@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "program.hpp"
+#include "walk.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
@@ -34,20 +35,6 @@ struct Settings {
   int num_frames = 30;  // after each start
   std::string csv_file;
 };
-
-struct Walk {
-  core::SourceInfo info;
-  std::vector<core::Frame> frames;
-  core::Truth truth;
-};
-
-Walk walk_of(const pipeline::Config& config) {
-  const auto source = pipeline::open_source(config);
-  Walk walk{.info = source->info(), .frames = {}, .truth = {}};
-  while (const auto frame = source->next()) walk.frames.push_back(*frame);
-  walk.truth = source->truth();
-  return walk;
-}
 
 // A file of one's own, gone in the end.
 struct PassingFile {
