@@ -57,7 +57,7 @@ function(samewhere_plain_folder NAME)
     endif()
     return()
   endif()
-  cmake_parse_arguments(FOLDER "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(FOLDER "" "" "LINKS;TEST_LINKS" ${ARGN})
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   add_library(samewhere_${NAME} STATIC IMPORTED GLOBAL)
   set_target_properties(samewhere_${NAME} PROPERTIES
