@@ -19,6 +19,7 @@ TEST(Background, TheThreadThatAsksGivesWayAndNoOther) {
   int of_worker = -100;
   WorkerThread worker([&] {
     work_in_background();
+    work_in_background();  // once is enough
     of_worker = own_priority();
   });
   worker.join();
