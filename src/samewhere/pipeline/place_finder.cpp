@@ -19,8 +19,8 @@ constexpr std::size_t kRememberedViews = 30;
 constexpr std::size_t kMaxHypotheses = 8;
 // From so many times the distance, or from this part of it, a landmark looks as it was described.
 constexpr double kSameLook = 1.3;
-// Of the landmarks that should be in sight at the place that shows most: with fewer, the map ends
-// there.
+// Of the landmarks that should be in sight at the place that shows most, in a view or a cell of it:
+// with fewer, the map ends there.
 constexpr double kMinTestable = 0.5;
 constexpr double kMargin_px = 8.0;  // of the image: no feature is found closer to its border
 
@@ -77,20 +77,29 @@ core::KeyframeId nearest_keyframe(const scene::MapVersion& map, const FoundPlace
   return keyframe_showing_most(map, seen).value_or(found.around.reference);
 }
 
-int num_in_sight(const scene::LocalMap& around, const features::View& view,
-                 const core::Rigid3& reference_from_body) {
+// Of columns * rows.
+std::size_t cell_of(const Eigen::Vector2d& pixel, const cv::Size& size_px, int columns, int rows) {
+  const auto part = [](double at_px, int end_px, int parts) {
+    return std::clamp(static_cast<int>(at_px * parts / end_px), 0, parts - 1);
+  };
+  const int row = part(pixel.y(), size_px.height, rows);
+  return static_cast<std::size_t>(row * columns + part(pixel.x(), size_px.width, columns));
+}
+
+// Calls visit(pixel) for each landmark that should be in sight.
+template <typename Visit>
+void for_each_in_sight(const scene::LocalMap& around, const features::View& view,
+                       const core::Rigid3& reference_from_body, const Visit& visit) {
   const core::Rigid3 camera_from_reference =
       inverse(reference_from_body * view.rig->body_from_camera[0]);
-  int count = 0;
   for (int i = 0; i < around.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Eigen::Vector3d point = camera_from_reference * around.points_in_reference[k];
     const double nearer = around.range_m[k] / point.norm();
     const bool looks_as_before = nearer < kSameLook && 1.0 / nearer < kSameLook;
     const auto pixel = geometry::project_undistorted(view.rig->cameras[0], point);
-    if (looks_as_before && pixel && is_inside(*pixel, view.image_size_px)) ++count;
+    if (looks_as_before && pixel && is_inside(*pixel, view.image_size_px)) visit(*pixel);
   }
-  return count;
 }
 
 }  // namespace
@@ -141,11 +150,18 @@ void PlaceFinder::think_of(const Place& place, const Question& question) {
   hypotheses_.push_back(std::move(next));
 }
 
+int PlaceFinder::Hypothesis::num_inliers() const {
+  int count = 0;
+  for (const Explained& of_view : explained)
+    count += of_view.is_testable ? of_view.all.num_inliers : 0;
+  return count;
+}
+
 // Each place once, as it explains most.
 void PlaceFinder::merge(const scene::MapVersion& map) {
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
                    [](const Hypothesis& a, const Hypothesis& b) {
-                     return a.explained.back().num_inliers > b.explained.back().num_inliers;
+                     return a.explained.back().all.num_inliers > b.explained.back().all.num_inliers;
                    });
   std::vector<Hypothesis> distinct;
   for (Hypothesis& next : hypotheses_) {
@@ -158,18 +174,16 @@ void PlaceFinder::merge(const scene::MapVersion& map) {
       continue;
     }
     same->place.is_recognised |= next.place.is_recognised;
-    if (same->explained.size() < next.explained.size()) same->explained = next.explained;
+    // what was another place until now made little of the views before
+    next.explained.back() = same->explained.back();
+    if (same->num_inliers() < next.num_inliers()) same->explained = std::move(next.explained);
   }
   hypotheses_ = std::move(distinct);
-  const auto sum = [](const Hypothesis& hypothesis) {
-    int num_inliers = 0;
-    for (const Explained& view : hypothesis.explained)
-      num_inliers += view.is_testable ? view.num_inliers : 0;
-    return num_inliers;
-  };
-  std::erase_if(hypotheses_, [&](const Hypothesis& hypothesis) { return sum(hypothesis) == 0; });
-  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
-                   [&](const Hypothesis& a, const Hypothesis& b) { return sum(a) > sum(b); });
+  std::erase_if(hypotheses_,
+                [](const Hypothesis& hypothesis) { return hypothesis.num_inliers() == 0; });
+  std::stable_sort(
+      hypotheses_.begin(), hypotheses_.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.num_inliers() > b.num_inliers(); });
   if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);
 }
 
@@ -177,17 +191,30 @@ void PlaceFinder::merge(const scene::MapVersion& map) {
 PlaceFinder::Explained PlaceFinder::explained(const Hypothesis& hypothesis,
                                               const features::View& view,
                                               const scene::MapVersion& map) const {
+  Explained of_view;
+  const auto at = [&](const Eigen::Vector2d& pixel) -> Evidence& {
+    return of_view.cells[cell_of(pixel, view.image_size_px, kColumns, kRows)];
+  };
+  const auto expect = [&](const scene::LocalMap& around, const core::Rigid3& reference_from_body) {
+    for_each_in_sight(around, view, reference_from_body,
+                      [&](const Eigen::Vector2d& pixel) { ++at(pixel).num_expected; });
+  };
   if (hypothesis.found) {
     const auto& [around, track] = *hypothesis.found;
-    const int num_expected = num_in_sight(around, view, track.pose.reference_from_frame);
-    return {track.pose.num_inliers, std::max(num_expected, track.pose.num_inliers)};
+    expect(around, track.pose.reference_from_frame);
+    for (const features::Match& match : track.matches) {
+      const auto feature = static_cast<std::size_t>(match.second);
+      ++at(view.features->undistorted_px[feature].cast<double>()).num_inliers;
+    }
+  } else {
+    const Place& last = hypothesis.place;
+    const core::KeyframeId keyframe = holder_of(map, last.keyframe).keyframe;
+    expect(map::local_map(map, keyframe, config_.map),
+           inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, last));
   }
-  const Place& last = hypothesis.place;
-  const core::KeyframeId keyframe = holder_of(map, last.keyframe).keyframe;
-  const scene::LocalMap around = map::local_map(map, keyframe, config_.map);
-  const core::Rigid3 reference_from_body =
-      inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, last);
-  return {0, num_in_sight(around, view, reference_from_body)};
+  for (const Evidence& of_cell : of_view.cells) of_view.all += of_cell;
+  of_view.all.num_expected = std::max(of_view.all.num_expected, of_view.all.num_inliers);
+  return of_view;
 }
 
 void PlaceFinder::record(const features::View& view, const scene::MapVersion& map) {
@@ -195,13 +222,14 @@ void PlaceFinder::record(const features::View& view, const scene::MapVersion& ma
   for (Hypothesis& hypothesis : hypotheses_) {
     hypothesis.explained.push_back(explained(hypothesis, view, map));
     if (hypothesis.found)
-      most_expected = std::max(most_expected, hypothesis.explained.back().num_expected);
+      most_expected = std::max(most_expected, hypothesis.explained.back().all.num_expected);
     if (hypothesis.explained.size() > kRememberedViews)
       hypothesis.explained.erase(hypothesis.explained.begin());
   }
   for (Hypothesis& hypothesis : hypotheses_) {
     Explained& now = hypothesis.explained.back();
-    now.is_testable = now.num_expected > 0 && now.num_expected >= kMinTestable * most_expected;
+    now.is_testable =
+        now.all.num_expected > 0 && now.all.num_expected >= kMinTestable * most_expected;
   }
 }
 
@@ -215,19 +243,25 @@ bool PlaceFinder::has_unheard(const std::vector<Place>& places, const Question& 
   });
 }
 
+bool PlaceFinder::are_comparable(const Evidence& a, const Evidence& b) {
+  return std::min(a.num_expected, b.num_expected) >=
+         kMinTestable * std::max(a.num_expected, b.num_expected);
+}
+
 bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const {
-  Explained by_other;
-  Explained by_this;
+  Evidence by_other;
+  Evidence by_this;
   int num_views = 0;  // of which both may speak
   auto a = other.explained.rbegin();
   for (auto b = hypothesis.explained.rbegin();
        a != other.explained.rend() && b != hypothesis.explained.rend(); ++a, ++b) {
     if (!a->is_testable || !b->is_testable) continue;
     ++num_views;
-    by_other.num_inliers += a->num_inliers;
-    by_other.num_expected += a->num_expected;
-    by_this.num_inliers += b->num_inliers;
-    by_this.num_expected += b->num_expected;
+    for (std::size_t i = 0; i < a->cells.size(); ++i) {
+      if (!are_comparable(a->cells[i], b->cells[i])) continue;
+      by_other += a->cells[i];
+      by_this += b->cells[i];
+    }
   }
   const double ratio = config_.track.lost.max_rival_ratio;
   const bool explains_as_much = by_other.num_inliers > ratio * by_this.num_inliers;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -32,7 +33,8 @@ struct Proof {
 // taken is held against every other: each view is tracked among the landmarks of each, and what
 // they explain of the same views is added up. One place is found once it has explained enough
 // views, and no other about as many inliers, or as many of the landmarks that should be in sight
-// there (track.lost.max_rival_ratio). Until then nobody can tell; the places are kept, for whoever
+// there (track.lost.max_rival_ratio), both counted in those cells of the views that the map shows
+// at either place. Until then nobody can tell; the places are kept, for whoever
 // walks on learns in the end which of them goes on as the views do. A place that the judge
 // recognised in the view, though nothing can be tracked there or its map shows too little, is
 // another place all the same: while there is one, nobody can tell either.
@@ -56,16 +58,30 @@ class PlaceFinder {
   void forget() { hypotheses_.clear(); }
 
  private:
-  // What a place makes of a view. Not testable: the map ends where the view looks.
-  struct Explained {
+  // What a place makes of a view, or of a cell of it.
+  struct Evidence {
     int num_inliers = 0;
     int num_expected = 0;  // landmarks that should be in sight there
-    bool is_testable = false;
+
+    Evidence& operator+=(const Evidence& more) {
+      num_inliers += more.num_inliers;
+      num_expected += more.num_expected;
+      return *this;
+    }
+  };
+  static constexpr int kColumns = 8;
+  static constexpr int kRows = 6;
+  struct Explained {
+    Evidence all;
+    std::array<Evidence, std::size_t{kColumns} * kRows> cells;  // row by row
+    bool is_testable = false;  // else the map ends where the view looks
   };
   struct Hypothesis {
     Place place;                       // as it explained a view last
     std::vector<Explained> explained;  // of each view since it was thought of, of the last few
     std::optional<FoundPlace> found;   // of this view
+
+    int num_inliers() const;  // of the views that may speak
   };
   // Near a place, and the best explanation elsewhere in its local map: another place.
   struct Sight {
@@ -91,6 +107,8 @@ class PlaceFinder {
   void merge(const scene::MapVersion& map);
   // Whether the judge recognised one of them where no hypothesis is.
   bool has_unheard(const std::vector<Place>& places, const Question& question) const;
+  // Whether the map shows about as much there at the one as at the other.
+  static bool are_comparable(const Evidence& a, const Evidence& b);
   bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
   bool is_proven(const Hypothesis& hypothesis, const Proof& proof) const;
 

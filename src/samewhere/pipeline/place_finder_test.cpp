@@ -117,27 +117,41 @@ TEST_F(TestPlaceFinder, WhatIsRecognisedBeyondReachIsNoRivalEvenIfItCannotBeTrac
   EXPECT_TRUE(found);
 }
 
-// Without all but a share of the features.
-features::View thinned(const features::View& view, double share) {
+void append_features(features::Features& features, const features::Features& more, double share) {
   core::Random random(4);
-  auto features = std::make_shared<features::Features>();
-  features->descriptors = cv::Mat(0, 32, CV_8U);
-  const features::Features& all = *view.features;
-  for (int i = 0; i < all.size(); ++i) {
+  for (int i = 0; i < more.size(); ++i) {
     if (random.uniform(0.0, 1.0) >= share) continue;
     const auto k = static_cast<std::size_t>(i);
-    features->raw_px.push_back(all.raw_px[k]);
-    features->undistorted_px.push_back(all.undistorted_px[k]);
-    features->depth_m.push_back(all.depth_m[k]);
-    features->right_x_px.push_back(all.right_x_px[k]);
-    features->octave.push_back(all.octave[k]);
-    features->angle_rad.push_back(all.angle_rad[k]);
-    features->rgb.push_back(all.rgb[k]);
-    features->descriptors.push_back(all.descriptors.row(i));
+    features.raw_px.push_back(more.raw_px[k]);
+    features.undistorted_px.push_back(more.undistorted_px[k]);
+    features.depth_m.push_back(more.depth_m[k]);
+    features.right_x_px.push_back(more.right_x_px[k]);
+    features.octave.push_back(more.octave[k]);
+    features.angle_rad.push_back(more.angle_rad[k]);
+    features.rgb.push_back(more.rgb[k]);
+    features.descriptors.push_back(more.descriptors.row(i));
   }
+}
+
+// Without all but a share of the features.
+features::View thinned(const features::View& view, double share) {
+  auto features = std::make_shared<features::Features>();
+  features->descriptors = cv::Mat(0, 32, CV_8U);
+  append_features(*features, *view.features, share);
   features::View thin = view;
   thin.features = features;
   return thin;
+}
+
+// As a pane of glass shows what is behind it, too.
+features::View shining_through(const features::View& view, const features::View& behind) {
+  auto features = std::make_shared<features::Features>();
+  features->descriptors = cv::Mat(0, 32, CV_8U);
+  append_features(*features, *view.features, 1.0);
+  append_features(*features, *behind.features, 1.0);
+  features::View both = view;
+  both.features = features;
+  return both;
 }
 
 TEST_F(TestPlaceFinder, APlaceOfWhichTheMapKnowsLittleIsHeldAgainstWhatItKnows) {
@@ -175,6 +189,51 @@ TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
     const core::Rigid3 turning{core::exp_so3({0.0, 0.07 * i, 0.0}), {0.0, 0.0, 0.0}};
     EXPECT_FALSE(finder_.look(features::test_view(world_, 10 + i, turning), map,
                               i == 0 ? both : std::vector<Place>{}, {kNumViews}, anywhere))
+        << "view " << i;
+  }
+}
+
+// What lies to the left of who looks along z; and so many times as many points there that nobody
+// will see again.
+features::TestWorld left_of(const features::TestWorld& world, double junk_share) {
+  const features::TestWorld junk = features::test_world(77);
+  features::TestWorld left;
+  const auto take = [&left](const features::TestWorld& from, double share) {
+    core::Random random(6);
+    for (std::size_t i = 0; i < from.points.size(); ++i) {
+      if (from.points[i].x() >= 0.0 || random.uniform(0.0, 1.0) >= share) continue;
+      left.points.push_back(from.points[i]);
+      left.descriptors.push_back(from.descriptors[i]);
+    }
+  };
+  take(world, 1.0);
+  take(junk, junk_share);
+  return left;
+}
+
+TEST_F(TestPlaceFinder, APlaceWhoseMapEndsInTheMiddleOfTheViewIsHeldAgainstOthersWhereItDoesNot) {
+  scene::MapVersion map;
+  map = apply(map, map::start_map(map, features::test_view(left_of(world_, 0.6), 0, {}), {}));
+  map = apply(map, map::start_map(map, features::test_view(world_, 1, {}), kFar));
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+}
+
+TEST_F(TestPlaceFinder, WhatWasTakenForAnotherPlaceAtFirstDoesNotHideWhatTheRightOneExplained) {
+  const core::Rigid3 aside{Eigen::Quaterniond::Identity(), {1.2, 0.0, 0.0}};
+  scene::MapVersion map;
+  map = apply(map, map::start_map(map, thinned(features::test_view(world_, 0, {}), 0.7), {}));
+  map = apply(map, map::start_map(map, features::test_view(world_, 1, aside), aside));
+  map = apply(map, map::start_map(map, features::test_view(world_, 2, {}), kFar));
+  const std::vector<Place> places = {{core::KeyframeId(0), core::Rigid3{}, true},
+                                     {core::KeyframeId(1), core::Rigid3{}, true},
+                                     {core::KeyframeId(2), core::Rigid3{}, true}};
+  const features::View first = shining_through(
+      features::test_view(world_, 10, {}), thinned(features::test_view(world_, 3, aside), 0.15));
+  EXPECT_FALSE(finder_.look(first, map, places, {kNumViews}, anywhere));
+  for (int i = 1; i < 2 * kNumViews; ++i) {
+    const core::Rigid3 moved{Eigen::Quaterniond::Identity(), {0.1 * i, 0.0, 0.0}};
+    EXPECT_FALSE(
+        finder_.look(features::test_view(world_, 10 + i, moved), map, {}, {kNumViews}, anywhere))
         << "view " << i;
   }
 }
