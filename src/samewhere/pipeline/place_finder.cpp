@@ -22,6 +22,9 @@ constexpr double kSameLook = 1.3;
 // Of the landmarks that should be in sight at the place that shows most, in a view or a cell of it:
 // with fewer, the map ends there.
 constexpr double kMinTestable = 0.5;
+// Of what a place explains: if less of it lies where the map shows another place, too, nobody can
+// tell the two apart.
+constexpr double kMinShared = 0.25;
 constexpr double kMargin_px = 8.0;  // of the image: no feature is found closer to its border
 
 bool is_inside(const Eigen::Vector2d& pixel, const cv::Size& size_px) {
@@ -80,7 +83,7 @@ core::KeyframeId nearest_keyframe(const scene::MapVersion& map, const FoundPlace
 // Of columns * rows.
 std::size_t cell_of(const Eigen::Vector2d& pixel, const cv::Size& size_px, int columns, int rows) {
   const auto part = [](double at_px, int end_px, int parts) {
-    return std::clamp(static_cast<int>(at_px * parts / end_px), 0, parts - 1);
+    return static_cast<int>(std::clamp(at_px / end_px * parts, 0.0, parts - 1.0));
   };
   const int row = part(pixel.y(), size_px.height, rows);
   return static_cast<std::size_t>(row * columns + part(pixel.x(), size_px.width, columns));
@@ -187,7 +190,7 @@ void PlaceFinder::merge(const scene::MapVersion& map) {
   if (hypotheses_.size() > kMaxHypotheses) hypotheses_.resize(kMaxHypotheses);
 }
 
-// Who is not found there is judged by where he was a view ago.
+// Who is not found there is judged by where he was last found.
 PlaceFinder::Explained PlaceFinder::explained(const Hypothesis& hypothesis,
                                               const features::View& view,
                                               const scene::MapVersion& map) const {
@@ -212,8 +215,11 @@ PlaceFinder::Explained PlaceFinder::explained(const Hypothesis& hypothesis,
     expect(map::local_map(map, keyframe, config_.map),
            inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, last));
   }
-  for (const Evidence& of_cell : of_view.cells) of_view.all += of_cell;
-  of_view.all.num_expected = std::max(of_view.all.num_expected, of_view.all.num_inliers);
+  // an inlier may be seen from nearer or closer to the border than is expected
+  for (Evidence& of_cell : of_view.cells) {
+    of_cell.num_expected = std::max(of_cell.num_expected, of_cell.num_inliers);
+    of_view.all += of_cell;
+  }
   return of_view;
 }
 
@@ -249,23 +255,28 @@ bool PlaceFinder::are_comparable(const Evidence& a, const Evidence& b) {
 }
 
 bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const {
-  Evidence by_other;
+  Evidence by_other;  // where both may speak
   Evidence by_this;
-  int num_views = 0;  // of which both may speak
+  Evidence by_other_in_all;
+  Evidence by_this_in_all;
+  int num_views = 0;
   auto a = other.explained.rbegin();
   for (auto b = hypothesis.explained.rbegin();
        a != other.explained.rend() && b != hypothesis.explained.rend(); ++a, ++b) {
     if (!a->is_testable || !b->is_testable) continue;
     ++num_views;
+    by_other_in_all += a->all;
+    by_this_in_all += b->all;
     for (std::size_t i = 0; i < a->cells.size(); ++i) {
       if (!are_comparable(a->cells[i], b->cells[i])) continue;
       by_other += a->cells[i];
       by_this += b->cells[i];
     }
   }
+  if (by_this.num_inliers < kMinShared * by_this_in_all.num_inliers) return true;
   const double ratio = config_.track.lost.max_rival_ratio;
   const bool explains_as_much = by_other.num_inliers > ratio * by_this.num_inliers;
-  const bool is_weak = by_other.num_inliers < config_.track.weak_inliers * num_views;
+  const bool is_weak = by_other_in_all.num_inliers < config_.track.weak_inliers * num_views;
   const bool is_as_true_to_itself = 1.0 * by_other.num_inliers * by_this.num_expected >
                                     ratio * by_this.num_inliers * by_other.num_expected;
   return explains_as_much || (!is_weak && is_as_true_to_itself);

@@ -193,29 +193,53 @@ TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
   }
 }
 
-// What lies to the left of who looks along z; and so many times as many points there that nobody
-// will see again.
-features::TestWorld left_of(const features::TestWorld& world, double junk_share) {
+enum class Side { kLeft, kRight };
+
+// What lies to one side of who looks along z; and such a share of points there that nobody will see
+// again.
+features::TestWorld one_side(const features::TestWorld& world, Side side, double junk_share) {
   const features::TestWorld junk = features::test_world(77);
-  features::TestWorld left;
-  const auto take = [&left](const features::TestWorld& from, double share) {
+  features::TestWorld half;
+  const auto take = [&half, side](const features::TestWorld& from, double share) {
     core::Random random(6);
     for (std::size_t i = 0; i < from.points.size(); ++i) {
-      if (from.points[i].x() >= 0.0 || random.uniform(0.0, 1.0) >= share) continue;
-      left.points.push_back(from.points[i]);
-      left.descriptors.push_back(from.descriptors[i]);
+      const bool is_left = from.points[i].x() < 0.0;
+      if (is_left != (side == Side::kLeft) || random.uniform(0.0, 1.0) >= share) continue;
+      half.points.push_back(from.points[i]);
+      half.descriptors.push_back(from.descriptors[i]);
     }
   };
   take(world, 1.0);
   take(junk, junk_share);
-  return left;
+  return half;
 }
 
 TEST_F(TestPlaceFinder, APlaceWhoseMapEndsInTheMiddleOfTheViewIsHeldAgainstOthersWhereItDoesNot) {
-  scene::MapVersion map;
-  map = apply(map, map::start_map(map, features::test_view(left_of(world_, 0.6), 0, {}), {}));
-  map = apply(map, map::start_map(map, features::test_view(world_, 1, {}), kFar));
+  const features::View left = features::test_view(one_side(world_, Side::kLeft, 0.6), 0, {});
+  const scene::MapVersion alone = apply({}, map::start_map({}, left, {}));
+  const scene::MapVersion both =
+      apply(alone, map::start_map(alone, features::test_view(world_, 1, {}), kFar));
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(both, i, both_)) << "view " << i;
+  finder_.forget();
+  const scene::MapVersion different =
+      apply(alone,
+            map::start_map(alone, features::test_view(partly_different(world_, 0.7), 1, {}), kFar));
+  std::optional<FoundPlace> found;
+  for (int i = 0; i < kNumViews; ++i) found = look(different, i, both_);
+  ASSERT_TRUE(found) << "half a view tells, too";
+  EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
+}
+
+TEST_F(TestPlaceFinder, WhereTheMapShowsTheOneLeftAndTheOtherRightNobodyCanTell) {
+  const features::View left = features::test_view(one_side(world_, Side::kLeft, 0.0), 0, {});
+  const features::View right = features::test_view(one_side(world_, Side::kRight, 0.0), 1, {});
+  scene::MapVersion map = apply({}, map::start_map({}, left, {}));
+  map = apply(map, map::start_map(map, right, kFar));
   for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  finder_.forget();
+  std::optional<FoundPlace> found;
+  for (int i = 0; i < kNumViews; ++i) found = look(map, i, {both_[0]});
+  EXPECT_TRUE(found) << "or this shows nothing";
 }
 
 TEST_F(TestPlaceFinder, WhatWasTakenForAnotherPlaceAtFirstDoesNotHideWhatTheRightOneExplained) {
@@ -229,13 +253,18 @@ TEST_F(TestPlaceFinder, WhatWasTakenForAnotherPlaceAtFirstDoesNotHideWhatTheRigh
                                      {core::KeyframeId(2), core::Rigid3{}, true}};
   const features::View first = shining_through(
       features::test_view(world_, 10, {}), thinned(features::test_view(world_, 3, aside), 0.15));
-  EXPECT_FALSE(finder_.look(first, map, places, {kNumViews}, anywhere));
-  for (int i = 1; i < 2 * kNumViews; ++i) {
-    const core::Rigid3 moved{Eigen::Quaterniond::Identity(), {0.1 * i, 0.0, 0.0}};
-    EXPECT_FALSE(
-        finder_.look(features::test_view(world_, 10 + i, moved), map, {}, {kNumViews}, anywhere))
-        << "view " << i;
-  }
+  const auto walk = [&](const std::vector<Place>& thought_of) {
+    std::optional<FoundPlace> found = finder_.look(first, map, thought_of, {kNumViews}, anywhere);
+    for (int i = 1; i < 2 * kNumViews && !found; ++i) {
+      const core::Rigid3 moved{Eigen::Quaterniond::Identity(), {0.1 * i, 0.0, 0.0}};
+      found =
+          finder_.look(features::test_view(world_, 10 + i, moved), map, {}, {kNumViews}, anywhere);
+    }
+    finder_.forget();
+    return found;
+  };
+  EXPECT_FALSE(walk(places));
+  EXPECT_TRUE(walk({places[0], places[1]})) << "or this shows nothing";
 }
 
 class WeakSight : public TestPlaceFinder {
