@@ -16,7 +16,7 @@ class LoopClosingInRooms : public LookAlikeRooms {
   core::Ledger ledger_of_walk() {
     config_.retrieve.window_frames = 1;
     cv::Mat picture(480, 640, CV_8UC1);
-    cv::randu(picture, 0, 255);
+    cv::RNG(1).fill(picture, cv::RNG::UNIFORM, 0, 255);
     LoopClosing closing(config_);
     for (std::size_t i = 0; i < map_.keyframes.size(); ++i)
       closing.answer(ToLoopClosing(FindLoops{map_, map_.keyframes[i].id, picture}));

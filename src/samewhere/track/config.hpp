@@ -125,7 +125,8 @@ inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
          .max = 1.0});
   visit("max_rival_ratio", config.max_rival_ratio,
         {.help = "nobody is found while another place of the map has more than this share of the "
-                 "best one's inliers, or of its inliers for each landmark in sight",
+                 "best one's inliers, or of its inliers for each landmark in sight, in what the "
+                 "map shows at both",
          .min = 0.0,
          .max = 1.0});
   visit("views_to_resume", config.views_to_resume,
