@@ -71,7 +71,7 @@ void measure_walk(const std::string& source, const Settings& settings, Table& ta
     Passes without{false, {}};
     core::Progress progress("passes", 2 * settings.num_passes);
     for (int pass = 0; pass < settings.num_passes; ++pass) {
-      // neither is always the one that finds the caches cold
+      // so that neither always finds the caches cold
       const bool is_with_first = pass % 2 == 0;
       for (Passes* passes : {is_with_first ? &with : &without, is_with_first ? &without : &with}) {
         config.close_loops = passes->close_loops;
