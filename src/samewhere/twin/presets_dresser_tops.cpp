@@ -194,7 +194,7 @@ Dresser::LampRow Dresser::add_lamps(const Space& space) {
   const Eigen::Vector2f lamp_m(lamp.size_m[course.along], lamp.size_m[1 - course.along]);
   std::vector<float> rows = ceiling_.rows;
   if (course.width_m() > kWide_m) rows = {0.25F, 0.75F};
-  if (lamp_m.y() > 0.4F * course.width_m()) rows = {0.5F};
+  if (lamp_m.y() > 0.4F * course.width_m()) rows.assign(1, 0.5F);
   // about as much light whatever the design
   const float usual_m2 =
       0.36F * ceiling_.pitch_m / 2.4F * (course.width_m() > kWide_m ? 2.0F : 1.0F);
