@@ -14,6 +14,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/input/image_file.hpp>
+#include <samewhere/input/picture_size.hpp>
 
 namespace samewhere::input {
 namespace {
@@ -23,17 +24,6 @@ using std::filesystem::path;
 
 bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
-
-// A damaged header can claim any size; without a limit it would end in the allocator.
-void check_size(const path& file, std::int64_t width_px, std::int64_t height_px) {
-  constexpr std::int64_t kMaxPixels = 100'000'000;
-  if (width_px < 1 || height_px < 1) {
-    throw InputError(file.string() + ": damaged image file: it ends before the picture");
-  }
-  if (width_px <= kMaxPixels / height_px) return;
-  throw InputError(fmt::format("{}: is {} x {} pixels, expected at most {}", file.string(),
-                               width_px, height_px, kMaxPixels));
-}
 
 // ---- JPEG
 
@@ -63,12 +53,12 @@ cv::Mat decode_jpeg(const path& file, std::string_view bytes) {
       !is_harmless(decoder.get())) {
     fail_jpeg(file, decoder.get());
   }
-  check_size(file, width_px, height_px);
+  require_reasonable_size(file, width_px, height_px);
   const bool is_grey = colour_space == TJCS_GRAY;
   cv::Mat image(height_px, width_px, is_grey ? CV_8UC1 : CV_8UC3);
   if (tjDecompress2(decoder.get(), data, bytes.size(), image.data, width_px,
                     static_cast<int>(image.step), height_px, is_grey ? TJPF_GRAY : TJPF_BGR,
-                    TJFLAG_ACCURATEDCT) != 0 &&
+                    TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0 &&
       !is_harmless(decoder.get())) {
     fail_jpeg(file, decoder.get());
   }
@@ -89,6 +79,7 @@ class PngReader {
     core::require(png_ != nullptr, "libpng gives a decoder");
     info_ = png_create_info_struct(png_);
     png_set_read_fn(png_, this, &PngReader::read);
+    png_set_chunk_cache_max(png_, kMaxTextChunks);
   }
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
@@ -96,7 +87,8 @@ class PngReader {
 
   void read_header() {
     guarded([this] { png_read_info(png_, info_); });
-    check_size(file_, png_get_image_width(png_, info_), png_get_image_height(png_, info_));
+    require_reasonable_size(file_, png_get_image_width(png_, info_),
+                            png_get_image_height(png_, info_));
   }
 
   bool is_grey() const {
@@ -161,6 +153,9 @@ class PngReader {
     std::memcpy(out, self->rest_.data(), num_bytes);
     self->rest_.remove_prefix(num_bytes);
   }
+
+  // each may unpack to 8 MB, which libpng limits; cameras write a few
+  static constexpr png_uint_32 kMaxTextChunks = 16;
 
   const path& file_;
   std::string_view rest_;
