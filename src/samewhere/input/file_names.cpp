@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/file_names.hpp>
 
 namespace samewhere::input {
@@ -63,15 +64,9 @@ bool is_image_name(std::string_view name) {
   return extension == ".jpg" || extension == ".jpeg" || extension == ".png";
 }
 
-bool is_there(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
+bool is_there(const std::filesystem::path& path) { return core::is_there(path); }
 
-bool is_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_directory(path, error);
-}
+bool is_folder(const std::filesystem::path& path) { return core::is_folder(path); }
 
 std::vector<std::string> sorted_names(const std::filesystem::path& folder) {
   std::error_code error;

@@ -18,7 +18,8 @@ std::optional<int> frame_number(std::string_view name);
 // Whether the name ends in .jpg, .jpeg or .png, in small or capital letters.
 bool is_image_name(std::string_view name);
 
-// Whether there is a file or folder (a folder) at that path. No where we may not look.
+// Whether there is a file or folder (a folder) at that path. No where we may not look. Throws
+// InputError for a link that leads nowhere, as core::is_there() does.
 bool is_there(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 

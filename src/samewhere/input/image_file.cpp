@@ -177,7 +177,7 @@ cv::Mat decode_png(const path& file, std::string_view bytes) {
 }  // namespace
 
 cv::Mat read_image(const path& path) {
-  const std::string bytes = core::read_file(path);
+  const std::string bytes = core::read_file(path, core::kPictureLimit);
   if (is_jpeg(bytes)) return decode_jpeg(path, bytes);
   if (is_png(bytes)) return decode_png(path, bytes);
   throw InputError(path.string() + (bytes.empty() ? ": is empty" : ": is neither") +
@@ -187,7 +187,7 @@ cv::Mat read_image(const path& path) {
 
 cv::Mat read_depth(const path& path, double units_per_m) {
   core::require(units_per_m > 0.0, "depth units per metre are positive");
-  const std::string bytes = core::read_file(path);
+  const std::string bytes = core::read_file(path, core::kPictureLimit);
   if (!is_png(bytes)) throw InputError(path.string() + ": is not PNG, expected a depth image");
   PngReader reader(path, bytes);
   reader.read_header();

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/video.hpp>
 #include <samewhere/input/video_decoder.hpp>
@@ -32,6 +33,7 @@ OpenVideo* load(const path& plugin) {
 }
 
 std::unique_ptr<VideoDecoder> open_decoder(const path& video, bool is_camera, const path& plugin) {
+  if (!is_camera) core::require_file(video);  // a pipe would be waited for without end
   std::unique_ptr<VideoDecoder> decoder(load(plugin)(video.c_str(), is_camera));
   if (decoder != nullptr) return decoder;
   throw InputError(video.string() + (is_camera ? ": cannot be opened as a camera; is it one, and "
