@@ -65,7 +65,8 @@ Config config_of_run(const std::filesystem::path& folder,
                      const std::vector<std::string>& assignments) {
   Config config;
   const std::filesystem::path config_file = folder / "config.yaml";
-  core::read_config(config, core::read_file(config_file), config_file.string());
+  core::read_config(config, core::read_file(config_file, core::kSettingsLimit),
+                    config_file.string());
   for (const auto& assignment : assignments) core::set_config(config, assignment);
   return config;
 }
@@ -131,7 +132,7 @@ std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder)
   const Config config = config_of_run(folder);
   const auto source = open_source(config);
   const core::Truth truth = source->truth();
-  if (std::filesystem::exists(folder / "matches.txt")) {
+  if (core::is_there(folder / "matches.txt")) {
     const RecognitionFindings findings{
         static_cast<int>(ledger_of_run(folder).size()), read_pairs(folder / "matches.txt"),
         read_pairs(folder / "accepted.txt"), config.retrieve.window_frames};
