@@ -11,6 +11,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/geometry/calibration.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/image_file.hpp>
@@ -80,20 +81,21 @@ Views look_for_boards(const std::string& images, const geometry::Board& board) {
 
 void print_without(const Views& views) {
   if (views.names_without.empty()) return;
-  fmt::print("no board in {} of {} pictures: {}\n", views.names_without.size(),
-             views.names.size() + views.names_without.size(), fmt::join(views.names_without, ", "));
+  core::print("no board in {} of {} pictures: {}\n", views.names_without.size(),
+              views.names.size() + views.names_without.size(),
+              fmt::join(views.names_without, ", "));
 }
 
 void print_calibration(const geometry::Calibration& found, const Views& views) {
-  fmt::print("reprojection error, pixels (RMS)\n");
+  core::print("reprojection error, pixels (RMS)\n");
   for (std::size_t i = 0; i < views.names.size(); ++i) {
-    fmt::print("  {:6.3f}  {}\n", found.view_rmse_px[i], views.names[i]);
+    core::print("  {:6.3f}  {}\n", found.view_rmse_px[i], views.names[i]);
   }
   const core::PinholeRadtan& c = found.camera;
-  fmt::print("  {:6.3f}  all {} pictures\n\n", found.rmse_px, views.names.size());
-  fmt::print("fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px, fx and fy to {:.1f} %\n", c.fx_px,
-             c.fy_px, c.cx_px, c.cy_px, 100.0 * found.focal_sd_ratio);
-  fmt::print("k1 {:.4f}  k2 {:.4f}  p1 {:.5f}  p2 {:.5f}\n\n", c.k1, c.k2, c.p1, c.p2);
+  core::print("  {:6.3f}  all {} pictures\n\n", found.rmse_px, views.names.size());
+  core::print("fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px, fx and fy to {:.1f} %\n", c.fx_px,
+              c.fy_px, c.cx_px, c.cy_px, 100.0 * found.focal_sd_ratio);
+  core::print("k1 {:.4f}  k2 {:.4f}  p1 {:.5f}  p2 {:.5f}\n\n", c.k1, c.k2, c.p1, c.p2);
 }
 
 void execute(const CalibrateCommand& command) {
@@ -106,7 +108,7 @@ void execute(const CalibrateCommand& command) {
   core::write_file(command.out,
                    fmt::format("# {} pictures of a board, {:.3f} px RMS\n{}", views.names.size(),
                                found.rmse_px, input::camera_file_text(found.camera)));
-  fmt::print("{}\n", command.out);
+  core::print("{}\n", command.out);
 }
 
 }  // namespace
