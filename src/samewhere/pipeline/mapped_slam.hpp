@@ -53,7 +53,8 @@ class MappedSlam {
   Config config_;
   MapPlan plan_;
   bool is_metric_;
-  std::optional<scene::MapFile> known_;  // until the first frame
+  std::optional<scene::MapFile> known_;         // until the first frame
+  std::optional<core::Descriptor> known_view_;  // one of its views
   std::optional<MapSaver> saver_;
   std::map<core::FrameId, std::string> thumbnails_;  // written in mapping's thread
   std::optional<Slam> slam_;                         // last: its threads end before what they use

@@ -12,8 +12,8 @@
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/pipeline/run_lists.hpp>
 #include <samewhere/report/frames.hpp>
-#include <samewhere/report/loops_read.hpp>
 #include <samewhere/report/timing_json.hpp>
 #include <samewhere/scene/map_file.hpp>
 
@@ -39,6 +39,7 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
 }
 
 SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_scale_free) {
+  const core::Ledger ledger = ledger_of_run(folder);  // first: it brings the other lists in step
   const report::FrameTimes frames = report::read_frames_csv(folder / "frames.csv");
   SlamFindings findings;
   findings.num_frames = static_cast<int>(frames.stamps_s.size());
@@ -49,7 +50,6 @@ SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_sca
   for (std::size_t i = 0; i < frames.stamps_s.size(); ++i)
     stamp_of[core::FrameId(i)] = frames.stamps_s[i];
   try {
-    const core::Ledger ledger = ledger_of_run(folder);
     add_loops(ledger, stamp_of, findings);
     add_found_again(ledger, stamp_of, frames.resumed, findings);
   } catch (const std::out_of_range&) {
@@ -71,9 +71,7 @@ Config config_of_run(const std::filesystem::path& folder,
   return config;
 }
 
-core::Ledger ledger_of_run(const std::filesystem::path& folder) {
-  return report::read_loops_json(folder / "loops.json");
-}
+core::Ledger ledger_of_run(const std::filesystem::path& folder) { return ledger_in_step(folder); }
 
 const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
                               const std::filesystem::path& folder) {

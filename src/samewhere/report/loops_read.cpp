@@ -165,4 +165,25 @@ core::Ledger read_loops_json(const std::filesystem::path& path) {
   }
 }
 
+core::Ledger read_ledger_rows(const std::vector<std::string>& rows, const std::string& name) {
+  core::Ledger ledger;
+  for (const std::string& row : rows) {
+    const auto refuse = [&](const char* why) {
+      throw core::InputError(
+          fmt::format("{}: row {} of its ledger: expected what `samewhere run` "
+                      "writes, but {}",
+                      name, ledger.size(), why));
+    };
+    try {
+      const Json json = Json::parse(row);
+      ledger.push_back(Entry(json, ledger.size()).row());
+    } catch (const Json::exception& error) {
+      refuse(error.what());
+    } catch (const core::InputError& error) {
+      refuse(error.what());
+    }
+  }
+  return ledger;
+}
+
 }  // namespace samewhere::report
