@@ -135,6 +135,7 @@ int execute(const RunCommand& command, Work work) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
+  config.input.needs_calibration = work == Work::kSlam;
   if (!command.camera.empty()) config.input.camera = command.camera;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);

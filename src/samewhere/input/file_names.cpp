@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/input/file_names.hpp>
+#include <samewhere/input/name_stamps.hpp>
 
 namespace samewhere::input {
 namespace {
@@ -55,12 +57,30 @@ std::optional<int> frame_number(std::string_view name) {
   return number;
 }
 
-bool is_image_name(std::string_view name) {
+namespace {
+
+std::string small_extension(std::string_view name) {
   std::string extension = std::filesystem::path(name).extension().string();
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  return extension == ".jpg" || extension == ".jpeg" || extension == ".png";
+  return extension;
+}
+
+bool is_usual_image_name(std::string_view name) {
+  const std::string extension = small_extension(name);
+  return !name.starts_with('.') &&
+         (extension == ".jpg" || extension == ".jpeg" || extension == ".png");
+}
+
+}  // namespace
+
+bool is_image_name(std::string_view name) {
+  if (is_usual_image_name(name)) return true;
+  constexpr std::array kOthers = {".bmp", ".pgm", ".ppm", ".pnm", ".tif", ".tiff", ".webp"};
+  const std::string extension = small_extension(name);
+  return !name.starts_with('.') && name != kSamePlaceTable &&
+         std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end();
 }
 
 bool is_there(const std::filesystem::path& path) {
@@ -78,10 +98,21 @@ std::vector<std::string> sorted_names(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::filesystem::directory_iterator entry(folder, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    names.push_back(entry->path().filename().string());
+    std::string name = entry->path().filename().string();
+    if (!name.starts_with('.')) names.push_back(std::move(name));
   }
   if (error) throw core::InputError(folder.string() + ": cannot be read: " + error.message());
   std::sort(names.begin(), names.end(), &natural_less);
+  return names;
+}
+
+std::vector<std::string> picture_names(const std::filesystem::path& folder) {
+  std::vector<std::string> names = sorted_names(folder);
+  const bool has_usual = std::any_of(names.begin(), names.end(), &is_usual_image_name);
+  std::erase_if(names, [has_usual](const std::string& name) {
+    return !(has_usual ? is_usual_image_name(name) : is_image_name(name));
+  });
+  order_by_decimals(names);
   return names;
 }
 

@@ -56,7 +56,11 @@ TEST(FileNames, ImagesAreToldByTheirEnding) {
   EXPECT_TRUE(is_image_name("a.jpg"));
   EXPECT_TRUE(is_image_name("a.JPEG"));
   EXPECT_TRUE(is_image_name("a.b.Png"));
-  EXPECT_FALSE(is_image_name("a.pgm"));
+  EXPECT_TRUE(is_image_name("a.PGM"));
+  EXPECT_TRUE(is_image_name("a.tiff"));
+  EXPECT_FALSE(is_image_name("same_place.pgm"));
+  EXPECT_FALSE(is_image_name("._a.jpg"));
+  EXPECT_FALSE(is_image_name("a.txt"));
   EXPECT_FALSE(is_image_name("jpg"));
 }
 
