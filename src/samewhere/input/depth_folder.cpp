@@ -67,12 +67,12 @@ Partners by_position(const Names& pictures, const Names& depths) {
 
 Partners best_partners(const Names& pictures, const Names& depths, double max_difference_s) {
   Partners best = by_key(pictures, depths, &stem_of);
-  if (2 * num_found(best) > pictures.size()) return best;
+  if (2 * num_found(best) >= pictures.size()) return best;
   for (Partners other :
        {by_key(pictures, depths, &number_of), by_time(pictures, depths, max_difference_s)}) {
     if (num_found(other) > num_found(best)) best = std::move(other);
   }
-  if (2 * num_found(best) > pictures.size()) return best;
+  if (2 * num_found(best) >= pictures.size()) return best;
   Partners in_turn = by_position(pictures, depths);
   return num_found(in_turn) > 0 ? in_turn : best;
 }

@@ -51,7 +51,10 @@ std::optional<int> frame_number(std::string_view name) {
   while (!name.empty() && !is_digit(name.back())) name.remove_suffix(1);
   std::size_t num_digits = 0;
   while (num_digits < name.size() && is_digit(name[name.size() - 1 - num_digits])) ++num_digits;
-  if (num_digits == 0 || num_digits > kMaxDigits) return std::nullopt;
+  if (num_digits == 0) return std::nullopt;
+  for (; num_digits > 1 && name[name.size() - num_digits] == '0'; --num_digits) {
+  }
+  if (num_digits > kMaxDigits) return std::nullopt;
   int number = 0;
   std::from_chars(name.data() + name.size() - num_digits, name.data() + name.size(), number);
   return number;

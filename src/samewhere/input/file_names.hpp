@@ -11,8 +11,9 @@ namespace samewhere::input {
 // The order of a person: runs of digits count as numbers, so 2.jpg comes before 10.jpg.
 bool natural_less(std::string_view a, std::string_view b);
 
-// The last number in the name before its extension, if it has at most nine digits: 12 for
-// frame-000012.color.jpg and 00012.png. (A longer one is a stamp or a serial, not a count.)
+// The last number in the name before its extension, if it has at most nine digits beside zeros that
+// lead it: 12 for frame-000012.color.jpg and 00012.png. (A longer one is a stamp or a serial, not a
+// count.)
 std::optional<int> frame_number(std::string_view name);
 
 // A table of the truth that has the ending of a picture.

@@ -183,7 +183,7 @@ const Unit* unit_since_1970(const std::vector<std::int64_t>& numbers) {
   return nullptr;
 }
 
-// Four of five steps are about the same.
+// Two of three steps are about the same: pictures may be missing.
 bool is_regular(const std::vector<std::int64_t>& numbers) {
   const std::int64_t step = median_step(numbers);
   std::size_t num_alike = 0;
@@ -191,7 +191,7 @@ bool is_regular(const std::vector<std::int64_t>& numbers) {
     const std::int64_t each = numbers[i] - numbers[i - 1];
     num_alike += 2 * each >= step && 2 * each <= 3 * step ? 1U : 0U;
   }
-  return 5 * num_alike >= 4 * (numbers.size() - 1);
+  return 3 * num_alike >= 2 * (numbers.size() - 1);
 }
 
 // Each tenth or thirtieth frame, frames missing here and there. Milliseconds between the pictures

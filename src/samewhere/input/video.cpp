@@ -72,10 +72,11 @@ core::Rig rig_of(const path& video, const Config& config, const cv::Size& size_p
 
 void warn_of_rotation(const path& video, int rotation_degrees) {
   if (rotation_degrees == 0) return;
+  // whether a quarter is one to the left or to the right, decoders do not agree
   spdlog::warn(
-      "{}: is noted to be turned by {} degrees for the eye; its pictures are used as they are "
-      "stored, and the calibration has to be of such pictures",
-      video.string(), rotation_degrees);
+      "{}: notes that a player turns it by {}; its pictures are used as they are stored, and the "
+      "calibration has to be of such pictures",
+      video.string(), rotation_degrees == 180 ? "180 degrees" : "90 degrees to a side");
 }
 
 class VideoSource : public core::Source {

@@ -220,7 +220,7 @@ TEST_F(Video, ARotationIsSaidAndNotApplied) {
   bytes.replace(matrix, quarter_turn.size(), quarter_turn);
   folder_.write("turned.mp4", bytes);
   EXPECT_THAT(said_on_reading("turned.mp4"),
-              AllOf(HasSubstr("turned.mp4"), HasSubstr("turned by 90 degrees")));
+              AllOf(HasSubstr("turned.mp4"), HasSubstr("turns it by 90 degrees")));
   EXPECT_EQ(open_source(folder_.at("turned.mp4"), config_)->next()->images[0].size(),
             cv::Size(64, 48));
 }
