@@ -80,6 +80,8 @@ extern "C" samewhere::input::VideoDecoder* samewhere_open_video(const char* path
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   constexpr const char* kQuiet = "-8";  // AV_LOG_QUIET
   setenv("OPENCV_FFMPEG_LOGLEVEL", kQuiet, 0);
+  // a playlist that has the name of a video must not fetch from elsewhere
+  setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "protocol_whitelist;file", 0);
   auto decoder = std::make_unique<samewhere::input::OpencvDecoder>(path, is_camera);
   return decoder->is_open() ? decoder.release() : nullptr;
 }

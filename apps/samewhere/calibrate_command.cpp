@@ -14,6 +14,7 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/geometry/board_frames.hpp>
 #include <samewhere/geometry/calibration.hpp>
 #include <samewhere/input/camera_file.hpp>
@@ -127,7 +128,7 @@ Views look_in_video(const std::string& video, const geometry::Board& board) {
   if (const auto frame = sharpest.finish()) add_view(frame->image, frame->name, board, all);
   progress.finish();
   Views apart = views_apart(all);
-  fmt::print(
+  core::print(
       "{} frames of {} read; {} sharp ones looked at, {} show the board, {} apart are used\n",
       num_read, video, all.names.size() + all.names_without.size(), all.names.size(),
       apart.names.size());
@@ -136,25 +137,26 @@ Views look_in_video(const std::string& video, const geometry::Board& board) {
 
 void print_without(const Views& views) {
   if (views.names_without.empty()) return;
-  fmt::print("no board in {} of {} pictures: {}\n", views.names_without.size(),
-             views.names.size() + views.names_without.size(), fmt::join(views.names_without, ", "));
+  core::print("no board in {} of {} pictures: {}\n", views.names_without.size(),
+              views.names.size() + views.names_without.size(),
+              fmt::join(views.names_without, ", "));
 }
 
 void print_calibration(const geometry::Calibration& found, const Views& views) {
-  fmt::print("reprojection error, pixels (RMS)\n");
+  core::print("reprojection error, pixels (RMS)\n");
   const auto is_left_out = [&found](std::size_t view) {
     return std::binary_search(found.left_out.begin(), found.left_out.end(), view);
   };
   for (std::size_t i = 0; i < views.names.size(); ++i) {
-    fmt::print("  {:6.3f}  {}{}\n", found.view_rmse_px[i], views.names[i],
-               is_left_out(i) ? "  left out: by another zoom or camera, or of a bent board?" : "");
+    core::print("  {:6.3f}  {}{}\n", found.view_rmse_px[i], views.names[i],
+                is_left_out(i) ? "  left out: by another zoom or camera, or of a bent board?" : "");
   }
   const core::PinholeRadtan& c = found.camera;
-  fmt::print("  {:6.3f}  all {} pictures{}\n\n", found.rmse_px,
-             views.names.size() - found.left_out.size(), found.left_out.empty() ? "" : " used");
-  fmt::print("fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px, fx and fy to {:.1f} %\n", c.fx_px,
-             c.fy_px, c.cx_px, c.cy_px, 100.0 * found.focal_sd_ratio);
-  fmt::print("k1 {:.4f}  k2 {:.4f}  p1 {:.5f}  p2 {:.5f}\n\n", c.k1, c.k2, c.p1, c.p2);
+  core::print("  {:6.3f}  all {} pictures{}\n\n", found.rmse_px,
+              views.names.size() - found.left_out.size(), found.left_out.empty() ? "" : " used");
+  core::print("fx {:.2f}  fy {:.2f}  cx {:.2f}  cy {:.2f} px, fx and fy to {:.1f} %\n", c.fx_px,
+              c.fy_px, c.cx_px, c.cy_px, 100.0 * found.focal_sd_ratio);
+  core::print("k1 {:.4f}  k2 {:.4f}  p1 {:.5f}  p2 {:.5f}\n\n", c.k1, c.k2, c.p1, c.p2);
 }
 
 void execute(const CalibrateCommand& command) {
@@ -168,7 +170,7 @@ void execute(const CalibrateCommand& command) {
   core::write_file(command.out, fmt::format("# {} pictures of a board, {:.3f} px RMS\n{}",
                                             views.names.size() - found.left_out.size(),
                                             found.rmse_px, input::camera_file_text(found.camera)));
-  fmt::print("{}\n", command.out);
+  core::print("{}\n", command.out);
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ std::string without_opencv_header(std::string text) {
 
 YAML::Node parse(const path& file) {
   try {
-    YAML::Node root = YAML::Load(without_opencv_header(core::read_file(file)));
+    YAML::Node root =
+        YAML::Load(without_opencv_header(core::read_file(file, core::kSettingsLimit)));
     if (root.IsMap()) return root;
   } catch (const YAML::Exception& error) {
     throw InputError(

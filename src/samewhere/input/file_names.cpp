@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/name_stamps.hpp>
 
@@ -86,15 +87,9 @@ bool is_image_name(std::string_view name) {
          std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end();
 }
 
-bool is_there(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
+bool is_there(const std::filesystem::path& path) { return core::is_there(path); }
 
-bool is_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_directory(path, error);
-}
+bool is_folder(const std::filesystem::path& path) { return core::is_folder(path); }
 
 std::vector<std::string> sorted_names(const std::filesystem::path& folder) {
   std::error_code error;

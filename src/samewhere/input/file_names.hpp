@@ -23,7 +23,8 @@ inline constexpr std::string_view kSamePlaceTable = "same_place.pgm";
 // .tiff, .webp), in small or capital letters. Names that begin with a dot are no pictures.
 bool is_image_name(std::string_view name);
 
-// Whether there is a file or folder (a folder) at that path. No where we may not look.
+// Whether there is a file or folder (a folder) at that path. No where we may not look. Throws
+// InputError for a link that leads nowhere, as core::is_there() does.
 bool is_there(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 

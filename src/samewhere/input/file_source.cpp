@@ -69,7 +69,7 @@ core::Rig rig_if_needed(Recording& recording, const std::vector<cv::Size>& sizes
 
 // A calibration is that of the sensor, and pictures are used as the sensor gave them.
 void warn_of_rotation(const std::filesystem::path& image) {
-  const int orientation = exif_orientation(core::read_file(image));
+  const int orientation = exif_orientation(core::read_file(image, core::kPictureLimit));
   if (orientation <= 1) return;
   spdlog::warn(
       "{}: is noted to be turned or mirrored (EXIF orientation {}); the pictures are used as they "

@@ -259,7 +259,7 @@ bool is_picture(std::string_view bytes) {
 }
 
 cv::Mat read_image(const path& path) {
-  const std::string bytes = core::read_file(path);
+  const std::string bytes = core::read_file(path, core::kPictureLimit);
   if (is_jpeg(bytes)) return decode_jpeg(path, bytes);
   if (is_png(bytes)) return decode_png(path, bytes);
   if (is_other_picture(bytes)) return as_picture(path, decode_other_picture(path, bytes));
@@ -272,7 +272,7 @@ cv::Mat read_image(const path& path) {
 
 cv::Mat read_depth(const path& path, double units_per_m) {
   core::require(units_per_m > 0.0, "depth units per metre are positive");
-  const std::string bytes = core::read_file(path);
+  const std::string bytes = core::read_file(path, core::kPictureLimit);
   if (!is_png(bytes) && !is_other_picture(bytes))
     throw InputError(path.string() + ": is not PNG, PGM or TIFF, expected a depth image");
   cv::Mat stored = is_png(bytes) ? decode_depth_png(path, bytes) : decode_depth_other(path, bytes);

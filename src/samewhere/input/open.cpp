@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/formats.hpp>
@@ -58,14 +58,9 @@ Recording read_folder(const path& folder, const Config& config) {
   fail_unknown(folder);
 }
 
-// The first bytes of a file, which tell what is in it.
 std::string beginning_of(const path& file) {
-  constexpr std::streamsize kNumBytes = 4096;
-  std::string bytes(kNumBytes, '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(bytes.data(), kNumBytes);
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return bytes;
+  constexpr std::size_t kNumBytes = 4096;
+  return core::read_beginning(file, kNumBytes);
 }
 
 // Text has no control characters but white space. (UTF-16 has zeros; core::read_text refuses it.)
@@ -124,7 +119,7 @@ Recording read_recording(const path& source, const Config& config) {
 }
 
 bool is_video(const path& source) {
-  if (is_folder(source)) return false;
+  if (!is_there(source) || is_folder(source)) return false;
   if (is_camera_device(source) || is_video_name(source.string())) return true;
   const std::string bytes = beginning_of(source);
   return !is_text(bytes) && !is_wide_text(bytes) && !is_picture(bytes);

@@ -41,7 +41,11 @@ int header_number(std::istream& in, const path& file) {
 }
 
 PlaceTruthMatrix read_pgm(const path& file, int num_frames) {
-  std::istringstream in(core::read_file(file));
+  constexpr std::uint64_t kMaxHeader = 1000;
+  const std::uint64_t num_pairs = std::uint64_t(num_frames) * std::uint64_t(num_frames);
+  const core::SizeLimit limit{std::max(num_pairs + kMaxHeader, core::kTextLimit.num_bytes),
+                              "a matrix of frames"};
+  std::istringstream in(core::read_file(file, limit));
   if (in.get() != 'P' || in.get() != '5') {
     throw InputError(file.string() + ": is not a binary PGM file (P5)");
   }

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/truth_file.hpp>

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/video_plugin.hpp>
 
 namespace samewhere::input {
@@ -30,6 +31,7 @@ path video_plugin_path() {
 }
 
 std::unique_ptr<VideoDecoder> open_decoder(const path& video, bool is_camera, const path& plugin) {
+  if (!is_camera) core::require_file(video);  // a pipe would be waited for without end
   auto* const open = load<OpenVideo>(plugin, kOpenVideoSymbol);
   std::unique_ptr<VideoDecoder> decoder(open(video.c_str(), is_camera));
   if (decoder != nullptr) return decoder;

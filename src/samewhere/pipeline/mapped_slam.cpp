@@ -31,7 +31,6 @@ MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan
       .keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); }};
   if (plan.known.empty()) {
     slam_.emplace(config, depth_from, hooks);
-    if (!plan.save.empty()) saver_.emplace(plan.save, config, slam_->describer_checksum());
     return;
   }
   using enum scene::MapAccess;
@@ -53,7 +52,6 @@ void MappedSlam::feed(core::Frame& frame) {
 }
 
 std::optional<std::string> MappedSlam::finish() {
-  begin();
   slam_->finish();
   if (!saver_) return std::nullopt;
   const std::optional<std::string> error = saver_->error();
@@ -61,8 +59,13 @@ std::optional<std::string> MappedSlam::finish() {
   return error;
 }
 
+// Before mapping has a frame.
 void MappedSlam::begin() {
-  if (auto begin = std::exchange(plan_.begin, {})) begin();
+  const auto begin = std::exchange(plan_.begin, {});
+  if (!begin) return;
+  const std::filesystem::path save = begin();
+  if (plan_.known.empty() && !save.empty())
+    saver_.emplace(save, config_, slam_->describer_checksum());
 }
 
 // Called in mapping's thread.

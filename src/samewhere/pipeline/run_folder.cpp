@@ -65,7 +65,8 @@ Config config_of_run(const std::filesystem::path& folder,
                      const std::vector<std::string>& assignments) {
   Config config;
   const std::filesystem::path config_file = folder / "config.yaml";
-  core::read_config(config, core::read_file(config_file), config_file.string());
+  core::read_config(config, core::read_file(config_file, core::kSettingsLimit),
+                    config_file.string());
   for (const auto& assignment : assignments) core::set_config(config, assignment);
   return config;
 }
@@ -129,7 +130,7 @@ report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::
 
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {
   Config config = config_of_run(folder);
-  const bool is_recognition = std::filesystem::exists(folder / "matches.txt");
+  const bool is_recognition = core::is_there(folder / "matches.txt");
   config.input.needs_calibration = !is_recognition;
   const auto source = open_source(config);
   const core::Truth truth = source->truth();
