@@ -130,6 +130,7 @@ pipeline::Config config_of(const RunCommand& command) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
+  config.input.needs_calibration = work == Work::kSlam;
   if (!command.camera.empty()) config.input.camera = command.camera;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);

@@ -110,6 +110,24 @@ std::string read_file(const fs::path& path, const SizeLimit& limit) {
   return read_all(path, file.number(), told_size, limit);
 }
 
+std::string read_beginning(const fs::path& path, std::size_t num_bytes) {
+  struct stat status {};
+  is_there(path);  // names a link that leads nowhere
+  if (::stat(path.c_str(), &status) != 0) fail(path, "cannot be read", errno);
+  if (!S_ISREG(status.st_mode)) return {};
+  const Descriptor file = open_to_read(path, status);
+  std::string content(num_bytes, '\0');
+  std::size_t filled = 0;
+  while (filled < num_bytes) {
+    const ssize_t got = ::read(file.number(), content.data() + filled, num_bytes - filled);
+    if (got < 0 && errno != EINTR) fail(path, "cannot be read", errno);
+    if (got == 0) break;
+    if (got > 0) filled += static_cast<std::size_t>(got);
+  }
+  content.resize(filled);
+  return content;
+}
+
 // ---- writing
 
 namespace {

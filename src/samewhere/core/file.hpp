@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,6 +13,11 @@ namespace samewhere::core {
 // file: a pipe by its name (one that the process was given open, such as /dev/fd/3, is read), a
 // device, a socket or a folder. Throws Interrupted after Ctrl-C while a long one is read.
 std::string read_file(const std::filesystem::path& path, const SizeLimit& limit = kTextLimit);
+
+// The first bytes of a file, which tell what is in it: `num_bytes`, or fewer if it has no more.
+// Nothing of what is no file, as of a pipe, from which they could not be read again. Throws
+// InputError if the file cannot be read.
+std::string read_beginning(const std::filesystem::path& path, std::size_t num_bytes);
 
 // Writes the whole file or nothing: into a temporary file beside it that no other program has
 // (NAME.partial-PROCESS-NUMBER), then renamed. A link is replaced, and that which it leads to

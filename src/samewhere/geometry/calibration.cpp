@@ -12,6 +12,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/grey.hpp>
+#include <samewhere/core/median.hpp>
 #include <samewhere/geometry/calibration.hpp>
 #include <samewhere/geometry/camera.hpp>
 
@@ -21,6 +22,7 @@ namespace {
 using core::InputError;
 
 constexpr double kDegrees_per_rad = 180.0 / std::numbers::pi;
+constexpr std::size_t kMinViews = 3;
 
 [[noreturn]] void fail_alike(double largest_rad) {
   throw InputError(
@@ -189,9 +191,71 @@ std::optional<std::vector<cv::Point2f>> find_board(const cv::Mat& image, const B
   return corners;
 }
 
+namespace {
+
+// The views that the camera is fitted to, and what is left out.
+struct SoundFit {
+  Fit fit;
+  std::vector<std::size_t> used;
+  std::vector<std::size_t> left_out;
+};
+
+// The view that errs most, if by several times the median of all, and by more than a detector errs.
+std::optional<std::size_t> worst_outlier(const Fit& fit) {
+  constexpr double kManyTimes = 3.0;
+  constexpr double kMinError_px = 0.3;
+  const std::vector<double> errors_px(fit.view_rmse_px.begin<double>(),
+                                      fit.view_rmse_px.end<double>());
+  const auto worst = std::max_element(errors_px.begin(), errors_px.end());
+  const double usual_px = core::median(errors_px).value_or(0.0);
+  if (!(*worst > std::max(kManyTimes * usual_px, kMinError_px))) return std::nullopt;
+  return static_cast<std::size_t>(worst - errors_px.begin());
+}
+
+SoundFit fit_to_sound_views(const std::vector<cv::Point3f>& corners,
+                            const std::vector<std::vector<cv::Point2f>>& views,
+                            const cv::Size& size_px) {
+  std::vector<std::vector<cv::Point2f>> kept = views;
+  SoundFit sound{fit_camera(corners, kept, size_px), {}, {}};
+  for (std::size_t i = 0; i < views.size(); ++i) sound.used.push_back(i);
+  const std::size_t num_needed = std::max(kMinViews, views.size() - views.size() / 3);
+  while (kept.size() > num_needed) {
+    const std::optional<std::size_t> worst = worst_outlier(sound.fit);
+    if (!worst) break;
+    sound.left_out.push_back(sound.used[*worst]);
+    sound.used.erase(sound.used.begin() + static_cast<std::ptrdiff_t>(*worst));
+    kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(*worst));
+    sound.fit = fit_camera(corners, kept, size_px);
+  }
+  std::sort(sound.left_out.begin(), sound.left_out.end());
+  return sound;
+}
+
+// Of a view that the camera was not fitted to, with the pose that suits it best.
+double rmse_of_other_view_px(const Fit& fit, const std::vector<cv::Point3f>& board,
+                             const std::vector<cv::Point2f>& view) {
+  cv::Mat turn;
+  cv::Mat shift;
+  cv::solvePnP(board, view, fit.k, fit.distortion, turn, shift);
+  std::vector<cv::Point2f> projected;
+  cv::projectPoints(board, turn, shift, fit.k, fit.distortion, projected);
+  return cv::norm(projected, view) / std::sqrt(static_cast<double>(view.size()));
+}
+
+std::vector<double> errors_of_views_px(const SoundFit& sound, const std::vector<cv::Point3f>& board,
+                                       const std::vector<std::vector<cv::Point2f>>& views) {
+  std::vector<double> errors_px(views.size());
+  for (std::size_t i = 0; i < sound.used.size(); ++i)
+    errors_px[sound.used[i]] = sound.fit.view_rmse_px.at<double>(static_cast<int>(i));
+  for (const std::size_t view : sound.left_out)
+    errors_px[view] = rmse_of_other_view_px(sound.fit, board, views[view]);
+  return errors_px;
+}
+
+}  // namespace
+
 Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Point2f>>& views,
                       const cv::Size& size_px) {
-  constexpr std::size_t kMinViews = 3;
   constexpr double kMinTilt_rad = 10.0 / kDegrees_per_rad;
   if (views.size() < kMinViews) {
     throw InputError(
@@ -200,7 +264,8 @@ Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Poin
                     board.num_columns, board.num_rows, views.size(), kMinViews));
   }
   const std::vector<cv::Point3f> corners = corners_in_board(board);
-  const Fit fit = fit_camera(corners, views, size_px);
+  const SoundFit sound = fit_to_sound_views(corners, views, size_px);
+  const Fit& fit = sound.fit;
   const double tilt_rad = largest_tilt_rad(fit.turns);
   if (!std::isfinite(fit.rmse_px) || !(tilt_rad >= kMinTilt_rad)) fail_alike(tilt_rad);
   const core::PinholeRadtan camera = camera_of(fit.k, fit.distortion, size_px);
@@ -209,7 +274,8 @@ Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Poin
   require_plausible_view(camera);
   return {.camera = camera,
           .rmse_px = fit.rmse_px,
-          .view_rmse_px = {fit.view_rmse_px.begin<double>(), fit.view_rmse_px.end<double>()},
+          .view_rmse_px = errors_of_views_px(sound, corners, views),
+          .left_out = sound.left_out,
           .focal_sd_ratio = sd_ratio};
 }
 

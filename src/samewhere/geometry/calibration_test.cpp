@@ -122,6 +122,34 @@ TEST(Calibration, TheErrorOfEachViewIsItsOwn) {
   EXPECT_NEAR(found.view_rmse_px[4], std::sqrt(2.0), 0.3);
 }
 
+// Of the same size, by a camera of another zoom.
+TEST(Calibration, AViewOfAnotherCameraIsLeftOut) {
+  for (const double zoom : {0.8, 1.15, 1.4}) {
+    core::PinholeRadtan other = kCamera;
+    other.fx_px *= zoom;
+    other.fy_px *= zoom;
+    core::Random random(3);
+    std::vector<std::vector<cv::Point2f>> views;
+    for (const core::Rigid3& pose : tilted_views()) views.push_back(measured(pose, 0.1, random));
+    views[5] = projected(tilted_views()[5], other);
+    const Calibration found = calibrate(kBoard, views, {640, 480});
+    EXPECT_THAT(found.left_out, testing::ElementsAre(5U)) << zoom;
+    EXPECT_NEAR(found.camera.fx_px, kCamera.fx_px, 0.005 * kCamera.fx_px) << zoom;
+    EXPECT_GT(found.view_rmse_px[5], 0.5) << zoom;
+    EXPECT_LT(found.rmse_px, 0.2) << zoom;
+  }
+}
+
+TEST(Calibration, SoundViewsAreAllUsed) {
+  for (const double noise_px : {0.05, 0.3, 1.0}) {
+    core::Random random(4);
+    std::vector<std::vector<cv::Point2f>> views;
+    for (const core::Rigid3& pose : tilted_views())
+      views.push_back(measured(pose, noise_px, random));
+    EXPECT_THAT(calibrate(kBoard, views, {640, 480}).left_out, testing::IsEmpty()) << noise_px;
+  }
+}
+
 TEST(Calibration, FewerThanThreeViewsAreRefused) {
   const auto poses = tilted_views();
   EXPECT_THAT(

@@ -13,6 +13,9 @@ struct Config {
   double max_stamp_difference_s = 0.02;
   bool depth = true;
   bool realtime = false;  // of a camera, or of a video that is played, the newest frame
+  // No setting but the caller's word: whether a calibration that cannot be read ends the run. Where
+  // it does not, the recording's own is warned of and left out.
+  bool needs_calibration = true;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {

@@ -1,10 +1,13 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/exif.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
 
@@ -52,6 +55,28 @@ core::Rig rig_of(const Recording& recording, const std::vector<cv::Size>& sizes_
   return rig;
 }
 
+// None where the recording goes on without one.
+core::Rig rig_if_needed(Recording& recording, const std::vector<cv::Size>& sizes_px) {
+  try {
+    return rig_of(recording, sizes_px);
+  } catch (const InputError& error) {
+    if (recording.needs_calibration) throw;
+    spdlog::warn("{}; the calibration is not used", error.what());
+  }
+  keep_first_camera(recording);
+  return {};
+}
+
+// A calibration is that of the sensor, and pictures are used as the sensor gave them.
+void warn_of_rotation(const std::filesystem::path& image) {
+  const int orientation = exif_orientation(core::read_file(image, core::kPictureLimit));
+  if (orientation <= 1) return;
+  spdlog::warn(
+      "{}: is noted to be turned or mirrored (EXIF orientation {}); the pictures are used as they "
+      "are stored, and the calibration has to be of such pictures",
+      image.string(), orientation);
+}
+
 void check_size(const std::filesystem::path& file, const cv::Mat& image, const cv::Size& size_px) {
   if (image.size() == size_px) return;
   throw InputError(fmt::format("{}: is {} x {} pixels, expected {} x {} as the first image",
@@ -77,7 +102,9 @@ FileSource::FileSource(std::string name, Recording recording) : recording_(std::
   }
   core::require(recording_.rig.cameras.empty() || recording_.rig.cameras.size() == sizes_px_.size(),
                 "a calibrated recording has one image per camera");
-  rig_ = std::make_shared<const core::Rig>(rig_of(recording_, sizes_px_));
+  warn_of_rotation(recording_.frames.front().images.front());
+  rig_ = std::make_shared<const core::Rig>(rig_if_needed(recording_, sizes_px_));
+  sizes_px_.resize(recording_.frames.front().images.size());
   const bool has_depth = std::any_of(recording_.frames.begin(), recording_.frames.end(),
                                      [](const FrameFiles& files) { return !files.depth.empty(); });
   info_ = {.name = std::move(name),

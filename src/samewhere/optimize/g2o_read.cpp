@@ -143,7 +143,8 @@ class Reader {
     const std::string& word = line.words[column];
     long name = 0;
     const char* const end = word.data() + word.size();
-    const auto [last, error] = std::from_chars(word.data(), end, name);
+    const char* const begin = word.data() + (word.size() > 1 && word.front() == '+' ? 1 : 0);
+    const auto [last, error] = std::from_chars(begin, end, name);
     if (error != std::errc{} || last != end || name < 0) {
       refuse(line, fmt::format("found '{}', expected the number of a vertex, 0 or more",
                                core::printable(word)));

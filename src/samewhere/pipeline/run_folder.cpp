@@ -127,10 +127,12 @@ report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::
 }
 
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {
-  const Config config = config_of_run(folder);
+  Config config = config_of_run(folder);
+  const bool is_recognition = core::is_there(folder / "matches.txt");
+  config.input.needs_calibration = !is_recognition;
   const auto source = open_source(config);
   const core::Truth truth = source->truth();
-  if (core::is_there(folder / "matches.txt")) {
+  if (is_recognition) {
     const RecognitionFindings findings{
         static_cast<int>(ledger_of_run(folder).size()), read_pairs(folder / "matches.txt"),
         read_pairs(folder / "accepted.txt"), config.retrieve.window_frames};
