@@ -67,9 +67,13 @@ function(samewhere_plain_folder NAME)
 endfunction()
 
 # samewhere_test(NAME SOURCES file... LINKS target...): one GoogleTest program, whose cases ctest runs and counts one by one.
-# Each case carries NAME as its label.
+# Each case carries NAME as its label. Without SAMEWHERE_TWIN the files that render are left out, and a program of nothing else.
 function(samewhere_test NAME)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
+  samewhere_leave_out_rendered(TEST_SOURCES)
+  if(NOT TEST_SOURCES)
+    return()
+  endif()
   add_executable(${NAME} ${TEST_SOURCES})
   target_link_libraries(${NAME} PRIVATE ${TEST_LINKS} samewhere_options GTest::gtest_main GTest::gmock)
   samewhere_merge_test(${NAME})

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
@@ -41,7 +42,9 @@ void add_dense_command(CLI::App& app) {
   auto command = std::make_shared<DenseCommand>();
   CLI::App* sub = app.add_subcommand(
       "dense", "Fused cloud, occupancy grid and octree of a finished run with depth or stereo");
-  sub->add_option("RUN", command->run, "folder that `samewhere run` wrote")->required();
+  sub->add_option("RUN", command->run, "folder that `samewhere run` wrote, or the map in it")
+      ->required()
+      ->transform(as_run_folder);
   sub->add_option("--cloud", command->files.cloud, "coloured points, PLY");
   sub->add_option("--grid", command->files.grid,
                   "plan for a map server: NAME.pgm and NAME.yaml are written");

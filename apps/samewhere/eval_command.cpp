@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
@@ -15,6 +16,7 @@ namespace {
 struct EvalCommand {
   std::string folder;
   std::string walk;
+  std::string truth;
   bool stages = false;
 };
 
@@ -24,16 +26,25 @@ void add_eval_command(CLI::App& app) {
   auto command = std::make_shared<EvalCommand>();
   CLI::App* sub =
       app.add_subcommand("eval", "Measure a finished run against the truth of its source");
-  sub->add_option("RUN", command->folder, "folder that `samewhere run` or `samewhere loops` wrote")
-      ->required();
-  sub->add_option(
+  sub->add_option("RUN", command->folder,
+                  "folder that `samewhere run` or `samewhere loops` wrote, or the map in it")
+      ->required()
+      ->transform(as_run_folder);
+  CLI::Option* truth = sub->add_option(
+      "--truth", command->truth,
+      "true trajectory, TUM format (stamp tx ty tz qx qy qz qw), where the recording has none");
+  CLI::Option* walk = sub->add_option(
       "--walk", command->walk,
       "count accepted loops between floors; a list `image floor clip`, as the run's source");
+  walk->excludes(truth);
   sub->add_flag("--stages", command->stages,
-                "print where the time went instead: wall time and processor time of each stage");
+                "print where the time went instead: wall time and processor time of each stage")
+      ->excludes(truth)
+      ->excludes(walk);
   sub->footer(
       "Examples:\n"
       "  samewhere eval runs/twin-corridors\n"
+      "  samewhere eval runs/office --truth mocap.tum\n"
       "  samewhere eval runs/walk.txt --walk tower/walk.txt\n"
       "  samewhere eval runs/twin-corridors --stages");
   sub->callback([command] {
@@ -41,7 +52,7 @@ void add_eval_command(CLI::App& app) {
       core::print("{}", report::as_text(pipeline::stages_of_folder(command->folder)));
       return;
     }
-    print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder)
+    print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder, command->truth)
                                         : pipeline::evaluate_walk(command->folder, command->walk));
   });
 }

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "ledger_figures.hpp"
+#include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -131,11 +132,20 @@ void change(const LedgerCommand& command, pipeline::Word word) {
       "As it was: report.html, and what `samewhere dense` made.\n");
 }
 
+// As core::stage_of() calls them.
+std::vector<std::string> names_of_stages() {
+  std::vector<std::string> names;
+  for (const core::Refusal refusal : core::kAllRefusals) names.emplace_back(name_of(refusal));
+  names.emplace_back("accepted");
+  return names;
+}
+
 void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
   CLI::App* sub = ledger.add_subcommand("list", "The candidates, a line each");
   sub->add_option("--verdict", command->verdict, "only these")
       ->check(CLI::IsMember({"LOOP", "NOT", "AMBIGUOUS"}));
-  sub->add_option("--stage", command->stage, "only those that this check refused");
+  sub->add_option("--stage", command->stage, "only those that this check refused")
+      ->check(CLI::IsMember(names_of_stages()));
   sub->add_option("--query", command->query, "only those of this frame");
   sub->callback([command] { list(*command); });
 }
@@ -170,8 +180,10 @@ void add_ledger_command(CLI::App& app) {
   auto command = std::make_shared<LedgerCommand>();
   CLI::App* sub = app.add_subcommand(
       "ledger", "Why each candidate of a run was refused or not; another word on it");
-  sub->add_option("RUN", command->folder, "folder that `samewhere run` or `samewhere loops` wrote")
-      ->required();
+  sub->add_option("RUN", command->folder,
+                  "folder that `samewhere run` or `samewhere loops` wrote, or the map in it")
+      ->required()
+      ->transform(as_run_folder);
   sub->require_subcommand(1);
   add_list(*sub, command);
   add_show(*sub, command);

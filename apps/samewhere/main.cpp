@@ -1,6 +1,5 @@
-#include <string>
-
 #include "commands.hpp"
+#include "options.hpp"
 #include <samewhere/core/program.hpp>
 
 namespace samewhere::app {
@@ -26,12 +25,14 @@ int run(int argc, char** argv) {
   add_calibrate_command(app);
   add_train_command(app);
   add_doctor_command(app);
+  refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // help and version are no errors
     if (error.get_exit_code() == 0) return app.exit(error);
-    return core::complain("samewhere", std::string(error.what()) + " (see samewhere --help)",
+    return core::complain("samewhere",
+                          unknown_command(app).value_or(error.what()) + " (see samewhere --help)",
                           core::kBadInput);
   }
   return exit_code;

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/pipeline/map_export.hpp>
@@ -48,7 +49,9 @@ void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
 void add_map_command(CLI::App& app) {
   auto command = std::make_shared<MapCommand>();
   CLI::App* sub = app.add_subcommand("map", "Look into a map file, or export it");
-  sub->add_option("FILE", command->file, "map.sw of a run")->required();
+  sub->add_option("FILE", command->file, "map.sw of a run, or the run's folder")
+      ->required()
+      ->transform(as_map_file);
   sub->require_subcommand(1);
   add_info(*sub, command);
   add_export(*sub, command);

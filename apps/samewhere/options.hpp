@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,18 @@ struct ConfigOptions {
 
 void add_config_options(CLI::App& command, ConfigOptions& options);
 pipeline::Config load(const ConfigOptions& options);
+
+// For CLI::Option::transform: a run's folder or the map in it, as the folder or as the map.
+std::string as_run_folder(std::string path);
+std::string as_map_file(std::string path);
+
+// From now on an empty value, which is what an unset variable of a shell leaves, is an error of
+// every option and positional argument of the command and those below it.
+void refuse_empty_values(CLI::App& command);
+
+// After parsing has failed: the word that stands where one of the commands below `app`, or below
+// the one that was chosen, is expected; with the command that was probably meant. Nothing if that
+// is not what is wrong.
+std::optional<std::string> unknown_command(const CLI::App& app);
 
 }  // namespace samewhere::app

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/evaluate/tower_walk.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
@@ -60,6 +62,17 @@ SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_sca
 }
 
 }  // namespace
+
+std::filesystem::path run_folder_of(const std::filesystem::path& path) {
+  std::error_code unknown;  // what cannot be looked at is told by the one that opens it
+  if (path.extension() != ".sw" || std::filesystem::is_directory(path, unknown)) return path;
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+std::filesystem::path map_file_of(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(path, unknown) ? path / "map.sw" : path;
+}
 
 Config config_of_run(const std::filesystem::path& folder,
                      const std::vector<std::string>& assignments) {
@@ -126,20 +139,44 @@ report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::
   return pair;
 }
 
-std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder) {
+namespace {
+
+// What comes with the source, with the trajectory of the file in place of its own.
+core::Truth with_trajectory(core::Truth truth, const std::filesystem::path& file,
+                            const core::Trajectory& estimate) {
+  truth.trajectory = core::read_tum(file);
+  truth.inertial.clear();
+  const auto is_covered = [&](const core::StampedPose& pose) {
+    return evaluate::truth_at(truth.trajectory, pose.stamp_s).has_value();
+  };
+  if (!estimate.empty() && std::none_of(estimate.begin(), estimate.end(), is_covered)) {
+    throw core::InputError(
+        fmt::format("{}: tells of no pose at a time of the run, {:.3f} to {:.3f} s; expected "
+                    "stamps of the same clock",
+                    file.string(), estimate.front().stamp_s, estimate.back().stamp_s));
+  }
+  return truth;
+}
+
+}  // namespace
+
+std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder,
+                                            const std::filesystem::path& truth_file) {
   Config config = config_of_run(folder);
   const bool is_recognition = core::is_there(folder / "matches.txt");
   config.input.needs_calibration = !is_recognition;
   const auto source = open_source(config);
-  const core::Truth truth = source->truth();
+  core::Truth truth = source->truth();
   if (is_recognition) {
     const RecognitionFindings findings{
         static_cast<int>(ledger_of_run(folder).size()), read_pairs(folder / "matches.txt"),
         read_pairs(folder / "accepted.txt"), config.retrieve.window_frames};
     return figures_of(evaluate_recognition(findings, truth));
   }
-  return figures_of(
-      evaluate_slam(read_slam_findings(folder, is_scale_free(source->info())), truth));
+  const SlamFindings findings = read_slam_findings(folder, is_scale_free(source->info()));
+  if (!truth_file.empty())
+    truth = with_trajectory(std::move(truth), truth_file, findings.trajectory);
+  return figures_of(evaluate_slam(findings, truth));
 }
 
 std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,

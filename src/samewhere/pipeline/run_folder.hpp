@@ -12,6 +12,13 @@
 
 namespace samewhere::pipeline {
 
+// The folder of the run that is meant: `path` itself, or of a map file (NAME.sw) the folder that it
+// lies in. Does not look whether a run has written it.
+std::filesystem::path run_folder_of(const std::filesystem::path& path);
+
+// The map file that is meant: `path` itself, or of a folder the map.sw in it.
+std::filesystem::path map_file_of(const std::filesystem::path& path);
+
 // The config that was in force in a finished run, then the assignments "section.key=value". Throws
 // InputError if config.yaml is missing or broken, and for an assignment that is.
 Config config_of_run(const std::filesystem::path& folder,
@@ -32,9 +39,12 @@ const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
 report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::LedgerRow& row);
 
 // The figures of a finished run, measured anew from the files in its folder against the truth that
-// comes with its source (config.yaml says which). Recognition alone is told by its matches.txt.
-// Throws InputError if a file is missing or broken, or if the source is no longer there.
-std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder);
+// comes with its source (config.yaml says which), or where the file `truth` is named, against the
+// trajectory in it (TUM format). Recognition alone is told by its matches.txt.
+// Throws InputError if a file is missing or broken, if the source is no longer there, or if `truth`
+// is named and shares no time with the run.
+std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder,
+                                            const std::filesystem::path& truth = {});
 
 // The accepted loops of a recognition run over a walk through floors that look alike: how many join
 // two floors (evaluate/tower_walk.hpp). `walk` is the list of images with floor and clip. Throws

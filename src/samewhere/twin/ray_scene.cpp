@@ -2,16 +2,13 @@
 #include <cmath>
 #include <limits>
 
-#include <embree3/rtcore.h>
-
 #include <samewhere/core/errors.hpp>
+#include <samewhere/twin/embree.hpp>
 #include <samewhere/twin/ray_scene.hpp>
 
 namespace samewhere::twin {
 namespace {
 
-// a ray does not meet the surface that it starts on
-constexpr float kMinReach = 1e-5F;
 constexpr std::size_t kPacket = 8;
 
 struct DeviceDeleter {
@@ -30,18 +27,7 @@ RTCDevice new_device() {
 
 }  // namespace
 
-float reach_of_plane(const Ray& ray, const Rectangle& rectangle) {
-  const Eigen::Vector3f normal = rectangle.normal();
-  return normal.dot(rectangle.corner_m - ray.origin) / normal.dot(ray.direction);
-}
-
-std::optional<float> reach_of(const Ray& ray, const Rectangle& rectangle) {
-  const float reach = reach_of_plane(ray, rectangle);
-  if (!(reach > kMinReach)) return std::nullopt;
-  const Eigen::Array2f at = rectangle.right_up_m(ray.origin + reach * ray.direction);
-  const bool is_inside = (at >= 0.0F).all() && (at <= rectangle.size_m.array()).all();
-  return is_inside ? std::optional(reach) : std::nullopt;
-}
+bool can_render() { return true; }
 
 struct RayScene::Impl {
   explicit Impl(const std::vector<Rectangle>& all)
@@ -111,21 +97,16 @@ RTCRay to_embree(const Ray& ray, float max_reach) {
 }  // namespace
 
 std::optional<Hit> RayScene::first_hit(const Ray& ray) const {
-  RTCIntersectContext context{};
-  rtcInitIntersectContext(&context);
   RTCRayHit asked{.ray = to_embree(ray, std::numeric_limits<float>::infinity()), .hit = {}};
   asked.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   asked.hit.primID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->scene.get(), &context, &asked);
+  embree::intersect(impl_->scene.get(), asked);
   const Hit hit = impl_->hit(asked.hit.primID, ray, asked.ray.tfar);
   return hit.rectangle < 0 ? std::nullopt : std::optional(hit);
 }
 
 void RayScene::first_hits(const Eigen::Vector3f& origin,
                           std::span<const Eigen::Vector3f> directions, std::span<Hit> hits) const {
-  RTCIntersectContext context{};
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (std::size_t first = 0; first < directions.size(); first += kPacket) {
     const std::size_t count = std::min(kPacket, directions.size() - first);
     alignas(32) std::array<int, kPacket> valid{};
@@ -148,7 +129,7 @@ void RayScene::first_hits(const Eigen::Vector3f& origin,
       asked.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       asked.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect8(valid.data(), impl_->scene.get(), &context, &asked);
+    embree::intersect(valid.data(), impl_->scene.get(), asked);
     for (std::size_t i = 0; i < count; ++i) {
       hits[first + i] =
           impl_->hit(asked.hit.primID[i], {origin, directions[first + i]}, asked.ray.tfar[i]);
@@ -158,10 +139,8 @@ void RayScene::first_hits(const Eigen::Vector3f& origin,
 
 bool RayScene::is_blocked(const Ray& ray) const {
   constexpr float kShortOfTheEnd = 0.999F;  // what lies at the end does not block
-  RTCIntersectContext context{};
-  rtcInitIntersectContext(&context);
   RTCRay asked = to_embree(ray, kShortOfTheEnd);
-  rtcOccluded1(impl_->scene.get(), &context, &asked);
+  embree::find_blocked(impl_->scene.get(), asked);
   return asked.tfar < 0.0F;
 }
 

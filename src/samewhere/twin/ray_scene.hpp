@@ -5,26 +5,18 @@
 #include <span>
 #include <vector>
 
-#include <samewhere/twin/surface.hpp>
+#include <samewhere/twin/ray.hpp>
 
 namespace samewhere::twin {
-
-struct Ray {
-  Eigen::Vector3f origin = Eigen::Vector3f::Zero();      // metres
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();  // of any length
-};
 
 struct Hit {
   int rectangle = -1;  // index, -1: nothing
   float reach = 0.0F;  // in lengths of the direction
 };
 
-// Where the ray meets the plane of the rectangle, in lengths of the direction; not finite if it
-// runs along it.
-float reach_of_plane(const Ray& ray, const Rectangle& rectangle);
-
-// Where the ray meets the rectangle, in lengths of the direction; nothing if it misses it.
-std::optional<float> reach_of(const Ray& ray, const Rectangle& rectangle);
+// Whether the program was built with a tracer of rays (-DSAMEWHERE_TWIN=ON). Without one the
+// constructor of RayScene throws InputError.
+bool can_render();
 
 // Answers which rectangle a ray meets first (Embree; Wald et al. 2014). Any number of threads may
 // ask at once. The rectangles must outlive it and stay where they are.

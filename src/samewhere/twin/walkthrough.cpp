@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/random.hpp>
@@ -11,6 +12,13 @@
 
 namespace samewhere::twin {
 namespace {
+
+const Spec& require_renderer(const Spec& spec) {
+  if (can_render()) return spec;
+  throw core::InputError(fmt::format(
+      "twin:{}: built without the rendered buildings (SAMEWHERE_TWIN=OFF); expected a recording",
+      spec.preset));
+}
 
 std::shared_ptr<const core::Rig> rig_for(const Spec& spec) {
   core::Rig rig{.cameras = {kTwinCamera},
@@ -61,7 +69,7 @@ std::vector<Person> people_in(const World& world, const Spec& spec) {
 }  // namespace
 
 Walkthrough::Walkthrough(const Spec& spec, const Config& config)
-    : spec_(spec),
+    : spec_(require_renderer(spec)),
       name_(fmt::format("{}-seed{}", spec.preset, spec.seed)),
       world_(build_world(spec)),
       motion_(motion_through(world_, spec)),

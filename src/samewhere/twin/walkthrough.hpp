@@ -22,7 +22,7 @@ inline constexpr double kFrameRate_hz = 15.0;
 // camera is at every frame, what its inertial unit and a robot's wheels say. Stays where it is.
 class Walkthrough {
  public:
-  // Throws InputError if the spec names no preset.
+  // Throws InputError if the spec names no preset, or if nothing can be rendered (can_render).
   Walkthrough(const Spec& spec, const Config& config);
   Walkthrough(const Walkthrough&) = delete;
   Walkthrough& operator=(const Walkthrough&) = delete;
