@@ -4,6 +4,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
+#include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
@@ -16,13 +17,10 @@ using core::InputError;
 // A camera of a format that does not say how large its pictures are.
 core::Camera camera_of_size(const core::Camera& unsized_camera, const cv::Size& size_px,
                             const std::filesystem::path& image) {
-  auto camera = std::get<core::PinholeRadtan>(unsized_camera);
-  camera.width_px = size_px.width;
-  camera.height_px = size_px.height;
-  if (is_centre_inside(camera)) return camera;
-  throw InputError(fmt::format(
-      "{}: wrong calibration: is {} x {} pixels, the centre ({}, {}) of its camera lies outside",
-      image.string(), size_px.width, size_px.height, camera.cx_px, camera.cy_px));
+  core::Camera camera = with_size(unsized_camera, size_px);
+  const auto fault = geometry::fault_of(camera);
+  if (!fault) return camera;
+  throw InputError(fmt::format("{}: wrong calibration of its camera: {}", image.string(), *fault));
 }
 
 cv::Size size_of(const core::Camera& camera) {
