@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +17,10 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
+#include <samewhere/input/camera_file.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run.hpp>
+#include <samewhere/pipeline/self_calibration.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/old_results.hpp>
 #include <samewhere/report/write.hpp>
@@ -33,6 +36,7 @@ struct RunCommand {
   std::string map;        // run only: start in this map
   bool localize = false;  // and leave it as it is
   std::string camera;
+  double fov_deg = 0.0;  // run only
   bool is_realtime = false;
   ConfigOptions config;
 };
@@ -130,37 +134,60 @@ void require_realtime_as_told(const std::string& source, const core::SourceInfo&
   }
 }
 
+// Where the camera was estimated, the run's folder says what it was: for later runs, and for
+// commands that open the recording again.
+void keep_camera(const std::optional<pipeline::SelfCalibration>& calibration,
+                 const std::filesystem::path& folder) {
+  if (calibration)
+    core::write_file(folder / "camera.txt", input::camera_file_text(calibration->camera));
+}
+
 int execute(const RunCommand& command, Work work) {
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
   if (!command.camera.empty()) config.input.camera = command.camera;
+  if (command.fov_deg > 0.0) config.input.fov_deg = command.fov_deg;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);
   const std::filesystem::path folder =
       command.out.empty() ? unused_folder(command.source) : std::filesystem::path(command.out);
   auto source = pipeline::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
-  if (work == Work::kSlam) pipeline::require_slam_input(source->info(), config);
+  std::optional<pipeline::SelfCalibration> calibration;
+  if (work == Work::kSlam) {
+    calibration = pipeline::calibrate_if_unknown(source, config);
+    pipeline::require_slam_input(source->info(), config);
+  }
+  if (calibration) config.input.camera = std::filesystem::absolute(folder / "camera.txt").string();
   report::require_folder_for_results(folder, config.source);
   // when source and map are known to be good: a bad one leaves no folder behind, nor does it cost
   // what an earlier run left there
   const auto begin = [&] {
     core::make_writable_folder(folder);
     report::remove_old_results(folder, command.map);
+    keep_camera(calibration, folder);
     core::write_file(folder / "config.yaml", core::config_as_yaml(config));
   };
   if (work == Work::kRecognition) begin();
-  const pipeline::RunOutcome outcome =
+  pipeline::RunOutcome outcome =
       work == Work::kSlam
           ? pipeline::run_slam(std::move(source), config, map_plan(command, folder, begin))
           : pipeline::run_recognition(std::move(source), config);
+  if (calibration) outcome.record.figures.push_back(pipeline::focal_length_figure(*calibration));
   write(outcome, work, folder);
   print_outcome(outcome, folder);
   for (const auto& error : {outcome.record.input_error, outcome.map_error})
     if (error) throw core::InputError(*error);
   return outcome.record.is_interrupted ? core::kInterruptedExit : core::kDone;
+}
+
+void add_fov_option(CLI::App& sub, RunCommand& command) {
+  sub.add_option("--fov", command.fov_deg,
+                 "horizontal field of view in degrees, of one camera without calibration; without "
+                 "it guessed and then estimated")
+      ->check(CLI::Range(5.0, 170.0));
 }
 
 void add_map_options(CLI::App& sub, RunCommand& command) {
@@ -184,8 +211,8 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
                   "folder for the results; without it runs/NAME, never overwriting");
   sub->add_option(
       "--camera", command->camera,
-      "camera file, as `samewhere calibrate` writes it: 3 rows of the camera matrix, then, "
-      "where known, k1 k2 p1 p2 k3 and width height; without it the source's own");
+      "camera file: as `samewhere calibrate` writes it, OpenCV, ORB-SLAM, ROS, Kalibr, COLMAP or "
+      "JSON; without it the source's own");
   sub->add_flag("--realtime", command->is_realtime,
                 "a camera, or a video played at its own pace: always the newest frame; says how "
                 "many were dropped; two such runs need not agree");
@@ -195,6 +222,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       [command] { command->config.assignments.push_back("verify.measure_all=true"); },
       "measure candidates, too, that verify.min_similarity or verify.pause_frames refuse, so that "
       "`ledger RUN replay` knows all");
+  if (work == Work::kSlam) add_fov_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;

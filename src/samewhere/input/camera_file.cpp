@@ -121,6 +121,15 @@ CameraFile read_camera_file(const std::filesystem::path& path) {
   return {camera_of(calibration), calibration.depth_units_per_m};
 }
 
+std::optional<double> depth_units_per_m_of(const std::filesystem::path& path) {
+  if (path.empty()) return std::nullopt;
+  try {
+    return read_camera_file(path).depth_units_per_m;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 core::Camera read_camera_file_for(const std::filesystem::path& path, const cv::Size& size_px,
                                   const std::filesystem::path& picture) {
   const core::Camera told = read_camera_file(path).camera;

@@ -28,6 +28,10 @@ struct CameraFile {
 // calibration (geometry/camera_check.hpp).
 CameraFile read_camera_file(const std::filesystem::path& path);
 
+// The depth units per metre that a camera file says. Nothing if it says none, if the path is empty
+// or if the file cannot be read: what is wrong with it is told when its camera is read.
+std::optional<double> depth_units_per_m_of(const std::filesystem::path& path);
+
 // The camera for pictures of a size, of which `picture` is one. Throws InputError also if the file
 // names another size or the centre lies outside: then the calibration belongs to other pictures.
 // Warns in the log at a field of view that hardly a lens has (geometry/camera.hpp).

@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/depth_check.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
 
@@ -104,6 +107,10 @@ std::optional<core::Frame> FileSource::next() {
   if (!files.depth.empty()) {
     frame.depth_m = read_depth(files.depth, recording_.depth_units_per_m);
     check_size(files.depth, *frame.depth_m, sizes_px_.front());
+    if (!std::exchange(is_depth_checked_, true)) {
+      const auto doubt = doubt_about_depth(*frame.depth_m, recording_.depth_units_per_m);
+      if (doubt) spdlog::warn("{}: {}", files.depth.string(), *doubt);
+    }
   }
   const auto& imu = recording_.imu;
   for (; next_imu_ < imu.size() && imu[next_imu_].stamp_s <= files.stamp_s; ++next_imu_) {

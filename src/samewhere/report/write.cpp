@@ -10,7 +10,7 @@ namespace samewhere::report {
 namespace {
 
 void write_common(const RunRecord& record, const std::filesystem::path& folder) {
-  core::write_file(folder / "loops.json", loops_json(record.ledger));
+  core::write_file(folder / "loops.json", loops_json(record.ledger, record.is_scale_unknown));
   core::write_file(folder / "config.yaml", record.config_yaml);
   core::write_file(folder / "timing.json", timing_json(record.timings, core::peak_memory_mib()));
   core::write_file(folder / "report.html", report_html(record));
