@@ -118,7 +118,7 @@ Eigen::Vector2d to_pixel(const Model& c, const Eigen::Vector2d& plane) {
 constexpr double kMinDepth_m = 1e-6;
 
 std::optional<Eigen::Vector2d> project_by(const PinholeRadtan& c, const Eigen::Vector3d& point) {
-  if (point.z() < kMinDepth_m) return std::nullopt;
+  if (!(point.z() >= kMinDepth_m)) return std::nullopt;
   const Eigen::Vector2d ideal = point.hnormalized();
   if (is_folded(c, ideal.squaredNorm())) return std::nullopt;
   return to_pixel(c, distort(c, ideal));
@@ -196,18 +196,25 @@ Eigen::Vector2d undistort_by(const KannalaBrandt& c, const Eigen::Vector2d& pixe
   return to_pixel(c, bent * (std::tan(angle) / bent_norm));
 }
 
+// A pixel becomes an index: what is no number, or too large for one, is no pixel.
+std::optional<Eigen::Vector2d> finite(const std::optional<Eigen::Vector2d>& pixel) {
+  constexpr double kFarthest_px = 1e9;
+  const auto is_index = [](double at_px) { return std::abs(at_px) < kFarthest_px; };
+  return pixel && is_index(pixel->x()) && is_index(pixel->y()) ? pixel : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> project(const core::Camera& camera,
                                        const Eigen::Vector3d& point_in_camera) {
-  return std::visit([&](const auto& c) { return project_by(c, point_in_camera); }, camera);
+  return finite(std::visit([&](const auto& c) { return project_by(c, point_in_camera); }, camera));
 }
 
 std::optional<Eigen::Vector2d> project_undistorted(const core::Camera& camera,
                                                    const Eigen::Vector3d& point_in_camera) {
-  if (point_in_camera.z() < kMinDepth_m) return std::nullopt;
+  if (!(point_in_camera.z() >= kMinDepth_m)) return std::nullopt;
   const Eigen::Vector2d ideal = point_in_camera.hnormalized();
-  return std::visit([&](const auto& c) { return to_pixel(c, ideal); }, camera);
+  return finite(std::visit([&](const auto& c) { return to_pixel(c, ideal); }, camera));
 }
 
 Eigen::Vector2d undistort(const core::Camera& camera, const Eigen::Vector2d& pixel) {

@@ -12,7 +12,7 @@ namespace samewhere::geometry {
 // Where a point in the camera's frame (metres; z forward, x right, y down) appears in the picture,
 // eq. (14)-(17) with distortion. Nothing if it is not in front of the camera (a fisheye may see
 // behind itself), or so far aside that the distortion would fold it back into the picture. The
-// pixel may lie outside the picture.
+// pixel may lie outside the picture; it is finite.
 std::optional<Eigen::Vector2d> project(const core::Camera& camera,
                                        const Eigen::Vector3d& point_in_camera);
 

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
@@ -117,6 +120,24 @@ TEST(CameraModels, AFisheyesMiddleIsThatOfItsPinhole) {
              bearing(camera, {200.0, 100.0}))
                 .norm(),
             1e-12);
+}
+
+TEST(CameraModels, WhatIsNoNumberIsNotSeen) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  core::Random random(6);
+  for (const core::Camera& camera :
+       {core::Camera(random_fisheye(random)), core::Camera(random_rational(random)),
+        core::Camera(core::PinholeRadtan{640, 480, 500.0, 500.0, 320.0, 240.0})}) {
+    for (const double bad : {nan, inf, -inf}) {
+      EXPECT_FALSE(project(camera, {bad, 0.0, 1.0}));
+      EXPECT_FALSE(project(camera, {0.0, bad, 1.0}));
+      EXPECT_FALSE(project_undistorted(camera, {bad, 0.0, 1.0}));
+      EXPECT_FALSE(project_undistorted(camera, {0.0, bad, 1.0}));
+    }
+    EXPECT_FALSE(project(camera, {0.0, 0.0, nan}));
+    EXPECT_FALSE(project_undistorted(camera, {0.0, 0.0, nan}));
+  }
 }
 
 TEST(CameraModels, OnlyBrownsFiveCoefficientsAreUndistortedByFeature) {
