@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,8 +19,10 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/terminal.hpp>
+#include <samewhere/input/camera_file.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run.hpp>
+#include <samewhere/pipeline/self_calibration.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/results_folder.hpp>
 #include <samewhere/report/write.hpp>
@@ -35,6 +38,7 @@ struct RunCommand {
   std::string map;        // run only: start in this map
   bool localize = false;  // and leave it as it is
   std::string camera;
+  double fov_deg = 0.0;  // run only
   bool is_realtime = false;
   bool is_forced = false;  // may replace the results of an earlier run
   ConfigOptions config;
@@ -126,12 +130,25 @@ void require_realtime_as_told(const std::string& source, const core::SourceInfo&
   }
 }
 
+// Where the camera was estimated, the run's folder says what it was: for later runs, and for
+// commands that open the recording again.
+pipeline::Config with_camera_kept(pipeline::Config config,
+                                  const std::optional<pipeline::SelfCalibration>& calibration,
+                                  const std::filesystem::path& folder) {
+  if (!calibration) return config;
+  const std::filesystem::path file = std::filesystem::absolute(folder / "camera.txt");
+  core::replace_file(file, input::camera_file_text(calibration->camera));
+  config.input.camera = file.string();
+  return config;
+}
+
 pipeline::Config config_of(const RunCommand& command) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
   config.input.needs_calibration = work == Work::kSlam;
   if (!command.camera.empty()) config.input.camera = command.camera;
+  if (command.fov_deg > 0.0) config.input.fov_deg = command.fov_deg;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);
   return config;
@@ -139,12 +156,14 @@ pipeline::Config config_of(const RunCommand& command) {
 
 // At the first good frame. Before, Ctrl-C ends the process at once: there is nothing to finish.
 // Settings that find no room are no reason to see nothing: the results are tried, too.
-std::filesystem::path begin_results(report::ResultsFolder& results,
-                                    const pipeline::Config& config) {
+std::filesystem::path begin_results(
+    report::ResultsFolder& results, const pipeline::Config& config,
+    const std::optional<pipeline::SelfCalibration>& calibration) {
   core::catch_interrupts();
   results.begin();
   try {
-    core::replace_file(results.path() / "config.yaml", core::config_as_yaml(config));
+    const pipeline::Config kept = with_camera_kept(config, calibration, results.path());
+    core::replace_file(results.path() / "config.yaml", core::config_as_yaml(kept));
   } catch (const core::InputError& error) {
     spdlog::warn("{}; the run goes on", error.what());
   }
@@ -173,10 +192,16 @@ int execute(const RunCommand& command, Work work) {
   report::ResultsFolder results(place_for_results(command, config.source));
   auto source = pipeline::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
-  if (work == Work::kSlam) pipeline::require_slam_input(source->info(), config);
-  const pipeline::RunOutcome outcome = work_on(std::move(source), command, config, work,
-                                               [&] { return begin_results(results, config); });
-  const report::RunRecord& record = outcome.record;
+  std::optional<pipeline::SelfCalibration> calibration;
+  if (work == Work::kSlam) {
+    calibration = pipeline::calibrate_if_unknown(source, config);
+    pipeline::require_slam_input(source->info(), config);
+  }
+  pipeline::RunOutcome outcome = work_on(std::move(source), command, config, work, [&] {
+    return begin_results(results, config, calibration);
+  });
+  report::RunRecord& record = outcome.record;
+  if (calibration) record.figures.push_back(pipeline::focal_length_figure(*calibration));
   std::vector<std::string> errors;
   if (results.has_begun()) {
     errors = write(outcome, work, results.path());
@@ -187,6 +212,13 @@ int execute(const RunCommand& command, Work work) {
   for (const auto& error : {record.input_error, outcome.map_error})
     if (error) errors.push_back(*error);
   return report_errors(errors, record.is_interrupted);
+}
+
+void add_fov_option(CLI::App& sub, RunCommand& command) {
+  sub.add_option("--fov", command.fov_deg,
+                 "horizontal field of view in degrees, of one camera without calibration; without "
+                 "it guessed and then estimated")
+      ->check(CLI::Range(5.0, 170.0));
 }
 
 void add_map_options(CLI::App& sub, RunCommand& command) {
@@ -213,8 +245,8 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
                 "first good frame on");
   sub->add_option(
       "--camera", command->camera,
-      "camera file, as `samewhere calibrate` writes it: 3 rows of the camera matrix, then, "
-      "where known, k1 k2 p1 p2 k3 and width height; without it the source's own");
+      "camera file: as `samewhere calibrate` writes it, OpenCV, ORB-SLAM, ROS, Kalibr, COLMAP or "
+      "JSON; without it the source's own");
   sub->add_flag("--realtime", command->is_realtime,
                 "a camera, or a video played at its own pace: always the newest frame; says how "
                 "many were dropped; two such runs need not agree");
@@ -224,6 +256,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       [command] { command->config.assignments.push_back("verify.measure_all=true"); },
       "measure candidates, too, that verify.min_similarity or verify.pause_frames refuse, so that "
       "`ledger RUN replay` knows all");
+  if (work == Work::kSlam) add_fov_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;

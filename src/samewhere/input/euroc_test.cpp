@@ -349,13 +349,14 @@ TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
               AllOf(HasSubstr("cam0/sensor.yaml, line 11: resolution"), HasSubstr("1 values")));
   EXPECT_THAT(said("[32, 24]", "[32, 24.5]"), HasSubstr("found 24.5"));
   EXPECT_THAT(said("[32, 24]", "[32, 1e30]"), HasSubstr("pixels"));
-  EXPECT_THAT(said("[32, 24]", "[[32, 24]]"), HasSubstr("plain values"));
+  EXPECT_THAT(said("[32, 24]", "[[[32, 24]]]"), HasSubstr("plain values"));
   EXPECT_THAT(said("intrinsics", "intrinsic"), HasSubstr("has no intrinsics"));
-  EXPECT_THAT(said("[30.5", "[-30.5"), HasSubstr("focal lengths -30.5"));
-  EXPECT_THAT(said("15.5,", "155,"), AllOf(HasSubstr("intrinsics"), HasSubstr("outside")));
+  EXPECT_THAT(said("[30.5", "[-30.5"), HasSubstr("fx = -30.5"));
+  EXPECT_THAT(said("15.5,", "155,"), AllOf(HasSubstr("centre (155, "), HasSubstr("outside")));
   EXPECT_THAT(said("pinhole", "omni"), AllOf(HasSubstr("omni"), HasSubstr("pinhole")));
-  EXPECT_THAT(said("radial-tangential", "equidistant"), HasSubstr("radial-tangential"));
-  EXPECT_THAT(said("-0.28, ", ""), HasSubstr("distortion_coefficients"));
+  EXPECT_THAT(said("radial-tangential", "fov"), HasSubstr("radial-tangential"));
+  EXPECT_THAT(said("-0.28, ", ""), HasSubstr("3 distortion values"));
+  EXPECT_THAT(said("-0.28, ", "-1e9, "), HasSubstr("k1 = -1000000000"));
   EXPECT_THAT(said("T_BS:", "T_XX:"), HasSubstr("has no T_BS"));
   EXPECT_THAT(said("  data:", "  dat:"), HasSubstr("has no T_BS.data"));
   EXPECT_THAT(said("[0.0, -1.0", "[0.0, -2.0"), HasSubstr("no rigid transform"));
@@ -368,6 +369,25 @@ TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
               AllOf(HasSubstr("accelerometer_noise_density"), HasSubstr("-1")));
   EXPECT_THAT(said_with("mav0/imu0/sensor.yaml", replaced(imu, "1.9393e-05", "-2")),
               AllOf(HasSubstr("gyroscope_random_walk"), HasSubstr("-2")));
+}
+
+TEST_F(Euroc, TheModelGoesByItsOtherNamesToo) {
+  for (const char* const name : {"radtan", "plumb_bob", "RadTan", "radial_tangential"}) {
+    folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "radial-tangential", name));
+    EXPECT_EQ(std::get<core::PinholeRadtan>(open()->next()->rig->cameras[0]).k1, -0.28) << name;
+  }
+  folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "pinhole", "Pinhole"));
+  EXPECT_EQ(complaint_on_opening(), "no error");
+  std::string bare = replaced(kLeftSensor, "distortion_model", "model_of_old");
+  bare = replaced(bare, "distortion_coefficients", "coefficients_of_old");
+  folder_.write("mav0/cam0/sensor.yaml", bare);
+  EXPECT_EQ(std::get<core::PinholeRadtan>(open()->next()->rig->cameras[0]).k1, 0.0);
+}
+
+TEST_F(Euroc, AnEquidistantCameraIsAFisheye) {
+  folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "radial-tangential", "equidistant"));
+  const core::Camera camera = open()->next()->rig->cameras[0];
+  EXPECT_EQ(std::get<core::KannalaBrandt>(camera).k1, -0.28);
 }
 
 TEST_F(Euroc, DamagedSensorFilesNeverCrash) {

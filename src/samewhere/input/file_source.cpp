@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -6,7 +7,9 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/median.hpp>
+#include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/depth_check.hpp>
 #include <samewhere/input/exif.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
@@ -19,13 +22,10 @@ using core::InputError;
 // A camera of a format that does not say how large its pictures are.
 core::Camera camera_of_size(const core::Camera& unsized_camera, const cv::Size& size_px,
                             const std::filesystem::path& image) {
-  auto camera = std::get<core::PinholeRadtan>(unsized_camera);
-  camera.width_px = size_px.width;
-  camera.height_px = size_px.height;
-  if (is_centre_inside(camera)) return camera;
-  throw InputError(fmt::format(
-      "{}: wrong calibration: is {} x {} pixels, the centre ({}, {}) of its camera lies outside",
-      image.string(), size_px.width, size_px.height, camera.cx_px, camera.cy_px));
+  core::Camera camera = with_size(unsized_camera, size_px);
+  const auto fault = geometry::fault_of(camera);
+  if (!fault) return camera;
+  throw InputError(fmt::format("{}: wrong calibration of its camera: {}", image.string(), *fault));
 }
 
 cv::Size size_of(const core::Camera& camera) {
@@ -133,6 +133,10 @@ std::optional<core::Frame> FileSource::next() {
   if (!files.depth.empty()) {
     frame.depth_m = read_depth(files.depth, recording_.depth_units_per_m);
     check_size(files.depth, *frame.depth_m, sizes_px_.front());
+    if (!std::exchange(is_depth_checked_, true)) {
+      const auto doubt = doubt_about_depth(*frame.depth_m, recording_.depth_units_per_m);
+      if (doubt) spdlog::warn("{}: {}", files.depth.string(), *doubt);
+    }
   }
   const auto& imu = recording_.imu;
   for (; next_imu_ < imu.size() && imu[next_imu_].stamp_s <= files.stamp_s; ++next_imu_) {

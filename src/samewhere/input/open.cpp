@@ -7,6 +7,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/formats.hpp>
@@ -111,7 +112,11 @@ Recording read_recording(const path& source, const Config& config) {
   Recording recording = is_folder(source) ? read_folder(source, config) : read_list(source, config);
   if (!config.camera.empty()) recording.camera_file = config.camera;
   recording.needs_calibration = config.needs_calibration || !config.camera.empty();
-  if (config.depth_factor > 0.0) recording.depth_units_per_m = config.depth_factor;
+  if (config.depth_factor > 0.0) {
+    recording.depth_units_per_m = config.depth_factor;
+  } else if (const auto told = depth_units_per_m_of(recording.camera_file)) {
+    recording.depth_units_per_m = *told;
+  }
   if (!config.depth) {
     for (FrameFiles& files : recording.frames) files.depth.clear();
   }

@@ -45,6 +45,13 @@ TEST_F(TumRgbd, TheDepthFactorCanBeSet) {
   EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 2.5F);
 }
 
+TEST_F(TumRgbd, TheCameraFileMaySayTheDepthFactorAndASettingOverrulesIt) {
+  folder_.write("camera.txt", std::string(kCamera) + "depth_factor 250\n");
+  EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 10.0F);
+  config_.depth_factor = 1000.0;
+  EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 2.5F);
+}
+
 TEST_F(TumRgbd, DepthCanBeLeftOut) {
   config_.depth = false;
   EXPECT_FALSE(open()->info().has_depth);

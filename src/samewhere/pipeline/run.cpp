@@ -157,6 +157,11 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   }
   const SlamEvaluation evaluation = evaluate_slam(findings, truth);
   record.figures = figures_of(evaluation);
+  record.is_scale_unknown = !mapped.is_metric();
+  if (record.is_scale_unknown) {
+    record.figures.push_back(
+        {"scale", "unknown: one camera without depth; lengths of the results are in map units"});
+  }
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"no start, at the end", slam.why_not_started()});
   record.figures.push_back({"starts given up", fmt::format("{}", slam.num_starts_given_up())});

@@ -126,10 +126,11 @@ std::string name_of_match(const core::Candidate& candidate) {
   return fmt::format("{} of session {}", index, candidate.match.session());
 }
 
-std::string loops_json(const core::Ledger& ledger) {
+std::string loops_json(const core::Ledger& ledger, bool is_scale_unknown) {
   Json candidates = Json::array();
   for (const core::LedgerRow* row : final_rows(ledger)) candidates.push_back(entry_of(*row));
-  const Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
+  Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
+  if (is_scale_unknown) document["scale"] = "unknown";
   return dumped(document, 1) + "\n";
 }
 

@@ -21,8 +21,9 @@ std::string name_of_match(const core::Candidate& candidate);
 // "is_by_features": true where it was found by its features and not by its looks, "is_lost": true
 // where nobody knew where the view was taken; "is_by_hand": true where a person accepted it;
 // "overruled": the first of the loops that went for its sake; "query_session" and "match_session"
-// where the match is a frame of an earlier session, one of the map that the run started in.
-std::string loops_json(const core::Ledger& ledger);
+// where the match is a frame of an earlier session, one of the map that the run started in. With
+// "scale": "unknown" where lengths are in map units, not metres.
+std::string loops_json(const core::Ledger& ledger, bool is_scale_unknown = false);
 
 // One row as an entry of loops.json, on one line; with "query_session" and "match_session" if the
 // query is not of the first session.

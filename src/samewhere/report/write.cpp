@@ -36,7 +36,7 @@ class Writer {
 std::vector<std::string> write_run(const RunRecord& record, const std::filesystem::path& folder) {
   Writer writer(folder);
   writer.write("trajectory.tum", core::tum_text(measured_trajectory(record.frames)));
-  writer.write("loops.json", loops_json(record.ledger));
+  writer.write("loops.json", loops_json(record.ledger, record.is_scale_unknown));
   writer.write("frames.csv", frames_csv(record.frames));
   writer.write("config.yaml", record.config_yaml);
   writer.write("odometry.tum", core::tum_text(record.odometry));
@@ -53,7 +53,7 @@ std::vector<std::string> write_recognition(const RunRecord& record,
   Writer writer(folder);
   writer.write("accepted.txt", pairs_text(accepted));
   writer.write("matches.txt", pairs_text(matches));
-  writer.write("loops.json", loops_json(record.ledger));
+  writer.write("loops.json", loops_json(record.ledger, record.is_scale_unknown));
   writer.write("config.yaml", record.config_yaml);
   writer.write("report.html", report_html(record));
   writer.write("timing.json", timing_json(record.timings, core::peak_memory_mib()));
