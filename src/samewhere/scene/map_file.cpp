@@ -97,9 +97,11 @@ class MapFile::Content {
   std::optional<std::string> thumbnail(core::FrameId frame) {
     return file_.find(kThumbnail, row_number(frame));
   }
+  // On a full disk a second time, with the room that the log took.
   void commit(const MapVersion& after, const MapExtras& extras);
 
  private:
+  void write(const MapVersion& after, const MapExtras& extras);
   // Since this one has read or written it: for what was not locked out (a network drive).
   void require_unchanged();
   MapState read_state();
@@ -355,6 +357,17 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
   core::require(after.keyframes.size() >= map_.keyframes.size() &&
                     after.landmarks.size() >= map_.landmarks.size(),
                 "a map file is given a later version of its map");
+  try {
+    write(after, extras);
+  } catch (const NoSpace&) {
+    if (!file_.shrink_log()) throw;
+    write(after, extras);
+  }
+}
+
+// Everything or, if it throws, nothing.
+void MapFile::Content::write(const MapVersion& after, const MapExtras& extras) {
+  rigs_.resize(state_.num_rigs);  // without those of a commit that failed
   MapState state = state_;
   file_.begin_writing();
   Transaction transaction = file_.transaction();

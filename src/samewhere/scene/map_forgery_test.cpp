@@ -390,7 +390,7 @@ void use(MapVersion map) {
 // More of them: SAMEWHERE_FORGERIES=100000 build/dev/samewhere_scene_test --gtest_filter=Forged*
 TEST_F(ForgedMaps, AnyForgedRowIsRefusedInALineOrCanBeUsed) {
   const char* wanted = std::getenv("SAMEWHERE_FORGERIES");
-  const int num_forgeries = wanted == nullptr ? 150 : std::atoi(wanted);
+  const int num_forgeries = wanted == nullptr ? 40 : std::atoi(wanted);
   int num_refused = 0;
   for (int i = 0; i < num_forgeries; ++i) {
     fresh_copy();

@@ -1,6 +1,7 @@
 #include <csignal>
 
 #include <gmock/gmock.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 
 #include <samewhere/core/file.hpp>
@@ -54,6 +55,35 @@ TEST_F(KilledInTheChange, WhereItCannotBePutInOrderACopyIs) {
   std::filesystem::permissions(folder_, std::filesystem::perms::owner_write,
                                std::filesystem::perm_options::add);
   EXPECT_EQ(core::read_file(path()), bytes);
+}
+
+// A small disk of its own, where this user can make one.
+TEST_F(MapFiles, AFullDiskHoldsTheMapAndNoLog) {
+  const std::filesystem::path disk = path("disk");
+  std::filesystem::create_directory(disk);
+  if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=512k") != 0)
+    GTEST_SKIP() << "no disk can be made";
+  std::string found;
+  std::uint64_t num_committed = 0;
+  {
+    MapFile file = MapFile::create(disk / "m.sw", {});
+    RandomEdits edits(4);
+    MapVersion map;
+    found = complaint([&] {
+      while (num_committed < 2000) {
+        map = apply(std::move(map), edits.next(map));
+        file.commit(map, {});
+        ++num_committed;
+      }
+    });
+  }
+  EXPECT_THAT(found, HasSubstr("m.sw: cannot be written: no space left on the disk"));
+  EXPECT_FALSE(std::filesystem::exists(disk / "m.sw-wal"));
+  EXPECT_GT(std::filesystem::file_size(disk / "m.sw"), 200'000U) << "most of the disk";
+  EXPECT_EQ(complaint([&] { num_committed -= MapFile::open(disk / "m.sw").load().map.number; }),
+            "none");
+  EXPECT_EQ(num_committed, 0U);
+  EXPECT_EQ(umount(disk.c_str()), 0);
 }
 
 TEST_F(MapFiles, TheLogOfAMapThatIsGoneIsNotTakenForThatOfANewOne) {

@@ -227,6 +227,8 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
 void RowFile::begin_writing() {
   if (has_log_) return;
   database_->execute("PRAGMA journal_mode=WAL");
+  // after a large commit: what is written before it goes into the file
+  database_->execute("PRAGMA journal_size_limit=4194304");
   has_log_ = true;
 }
 
@@ -241,6 +243,11 @@ RowFile::~RowFile() {
     // it
   }
   lock_->give_back_room();
+}
+
+bool RowFile::shrink_log() {
+  constexpr std::int64_t kDone = 0;  // another program may be reading from it
+  return has_log_ && database_->number("PRAGMA wal_checkpoint(TRUNCATE)") == kDone;
 }
 
 void RowFile::commit(Transaction& transaction) {

@@ -44,6 +44,8 @@ class RowFile {
   // Commits, if the disk has room for all that the file holds then: the log can always be written
   // into the file, and its own space given back.
   void commit(Transaction& transaction);
+  // Writes the log into the file, for its room on the disk. Whether it could.
+  bool shrink_log();
   // Adds the row or replaces it.
   void put(const char* table, std::int64_t number, std::string_view bytes);
   void remove_from(const char* table, std::int64_t first_number);

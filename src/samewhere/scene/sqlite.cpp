@@ -34,8 +34,6 @@ std::string printable(std::string_view message) {
 // What the code means to whoever reads the message.
 std::string meaning_of(int code, const char* message) {
   switch (code & 0xff) {
-    case SQLITE_FULL:
-      return "cannot be written: no space left on the disk";
     case SQLITE_IOERR:
       return fmt::format("cannot be read or written: {}", message);
     case SQLITE_READONLY:
@@ -95,6 +93,7 @@ void Database::restrict_to_data() {
 }
 
 void Database::fail(int code) const {
+  if ((code & 0xff) == SQLITE_FULL) throw NoSpace(path_);
   const char* message = connection_ ? sqlite3_errmsg(connection_.get()) : "out of memory";
   const std::string text = path_.string() + ": " + meaning_of(code, printable(message).c_str());
   const int kind = code & 0xff;

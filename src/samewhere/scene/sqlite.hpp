@@ -29,6 +29,13 @@ class NeedsRepair : public core::InputError {
   using core::InputError::InputError;
 };
 
+// The disk is full.
+class NoSpace : public core::InputError {
+ public:
+  explicit NoSpace(const std::filesystem::path& path)
+      : core::InputError(path.string() + ": cannot be written: no space left on the disk") {}
+};
+
 class Statement;
 
 // A connection to an SQLite file, which may come from anywhere: nothing in its schema is run

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/scene/sqlite.hpp>
 #include <samewhere/scene/writer_lock.hpp>
 
 namespace samewhere::scene {
@@ -45,13 +46,11 @@ bool WriterLock::is_held(const std::filesystem::path& path) {
 }
 
 void WriterLock::reserve(std::uint64_t num_bytes) {
-  if (num_bytes <= num_reserved_) return;
-  if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(num_bytes)) == 0) {
-    num_reserved_ = num_bytes;
-  } else if (errno == ENOSPC || errno == EDQUOT) {
-    was_refused_ = true;
-    throw core::InputError(path_.string() + ": cannot be written: no space left on the disk");
-  }
+  // again each time: SQLite cuts the file to its size whenever the log is written into it
+  if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(num_bytes)) == 0) return;
+  if (errno != ENOSPC && errno != EDQUOT) return;
+  was_refused_ = true;
+  throw NoSpace(path_);
 }
 
 void WriterLock::give_back_room() {

@@ -30,7 +30,6 @@ class WriterLock {
  private:
   std::filesystem::path path_;
   int descriptor_;
-  std::uint64_t num_reserved_ = 0;
   bool was_refused_ = false;
 };
 
