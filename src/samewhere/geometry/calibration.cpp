@@ -2,7 +2,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/grey.hpp>
 #include <samewhere/core/median.hpp>
+#include <samewhere/core/random.hpp>
 #include <samewhere/geometry/calibration.hpp>
 #include <samewhere/geometry/camera.hpp>
 
@@ -193,6 +196,97 @@ std::optional<std::vector<cv::Point2f>> find_board(const cv::Mat& image, const B
 
 namespace {
 
+using Corners = std::vector<cv::Point2f>;
+
+// More than a detector errs; a view that errs less belongs to the camera.
+constexpr double kMinError_px = 0.3;
+
+std::vector<Corners> chosen(const std::vector<Corners>& views,
+                            const std::vector<std::size_t>& which) {
+  std::vector<Corners> some;
+  for (const std::size_t view : which) some.push_back(views[view]);
+  return some;
+}
+
+// Of each view, fitted to or not, with the pose that suits it best.
+std::vector<double> errors_of_views_px(const Fit& fit, const std::vector<cv::Point3f>& board,
+                                       const std::vector<Corners>& views) {
+  std::vector<double> errors_px;
+  for (const Corners& view : views) {
+    cv::Mat turn;
+    cv::Mat shift;
+    cv::solvePnP(board, view, fit.k, fit.distortion, turn, shift);
+    Corners projected;
+    cv::projectPoints(board, turn, shift, fit.k, fit.distortion, projected);
+    errors_px.push_back(cv::norm(projected, view) / std::sqrt(static_cast<double>(view.size())));
+  }
+  return errors_px;
+}
+
+// A few views by chance, ascending.
+std::vector<std::size_t> drawn(std::size_t num_views, std::size_t count, core::Random& random) {
+  std::vector<int> few =
+      random.distinct_indices(static_cast<int>(count), static_cast<int>(num_views));
+  std::sort(few.begin(), few.end());
+  return {few.begin(), few.end()};
+}
+
+// The errors of all views under the camera of a few, of which half of all views err least (least
+// median, Rousseeuw 1984). Empty: no few views make a camera.
+std::vector<double> errors_by_least_median_px(const std::vector<cv::Point3f>& board,
+                                              const std::vector<Corners>& views,
+                                              const cv::Size& size_px) {
+  constexpr int kNumDraws = 40;
+  constexpr std::size_t kNumDrawn = 4;
+  core::Random random(1);
+  std::vector<double> best_px;
+  for (int i = 0; i < kNumDraws; ++i) {
+    const auto few = drawn(views.size(), std::min(kNumDrawn, views.size() - 1), random);
+    try {
+      const Fit fit = fit_camera(board, chosen(views, few), size_px);
+      std::vector<double> errors_px = errors_of_views_px(fit, board, views);
+      if (best_px.empty() || core::median(errors_px) < core::median(best_px))
+        best_px = std::move(errors_px);
+    } catch (const InputError&) {  // these few are alike
+    } catch (const cv::Exception&) {
+    }
+  }
+  return best_px;
+}
+
+std::vector<std::size_t> views_below(const std::vector<double>& errors_px, double limit_px) {
+  std::vector<std::size_t> below;
+  for (std::size_t i = 0; i < errors_px.size(); ++i) {
+    if (errors_px[i] <= limit_px) below.push_back(i);
+  }
+  return below;
+}
+
+// The views of one camera: those that err by no more than several times the median. All of them if
+// all err little, or if fewer than two thirds agree.
+std::vector<std::size_t> views_of_one_camera(const Fit& fit_to_all,
+                                             const std::vector<cv::Point3f>& board,
+                                             const std::vector<Corners>& views,
+                                             const cv::Size& size_px) {
+  constexpr double kManyTimes = 3.0;
+  constexpr int kNumRounds = 3;
+  std::vector<std::size_t> all(views.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::size_t num_needed = std::max(kMinViews, views.size() - views.size() / 3);
+  const double worst_px = *std::max_element(fit_to_all.view_rmse_px.begin<double>(),
+                                            fit_to_all.view_rmse_px.end<double>());
+  if (worst_px <= kMinError_px || num_needed == views.size()) return all;
+  std::vector<double> errors_px = errors_by_least_median_px(board, views, size_px);
+  std::vector<std::size_t> sound;
+  for (int round = 0; round < kNumRounds; ++round) {
+    const double usual_px = core::median(errors_px).value_or(worst_px);
+    sound = views_below(errors_px, std::max(kManyTimes * usual_px, kMinError_px));
+    if (sound.size() < num_needed || sound.size() == views.size()) return all;
+    errors_px = errors_of_views_px(fit_camera(board, chosen(views, sound), size_px), board, views);
+  }
+  return sound;
+}
+
 // The views that the camera is fitted to, and what is left out.
 struct SoundFit {
   Fit fit;
@@ -200,55 +294,24 @@ struct SoundFit {
   std::vector<std::size_t> left_out;
 };
 
-// The view that errs most, if by several times the median of all, and by more than a detector errs.
-std::optional<std::size_t> worst_outlier(const Fit& fit) {
-  constexpr double kManyTimes = 3.0;
-  constexpr double kMinError_px = 0.3;
-  const std::vector<double> errors_px(fit.view_rmse_px.begin<double>(),
-                                      fit.view_rmse_px.end<double>());
-  const auto worst = std::max_element(errors_px.begin(), errors_px.end());
-  const double usual_px = core::median(errors_px).value_or(0.0);
-  if (!(*worst > std::max(kManyTimes * usual_px, kMinError_px))) return std::nullopt;
-  return static_cast<std::size_t>(worst - errors_px.begin());
-}
-
-SoundFit fit_to_sound_views(const std::vector<cv::Point3f>& corners,
-                            const std::vector<std::vector<cv::Point2f>>& views,
-                            const cv::Size& size_px) {
-  std::vector<std::vector<cv::Point2f>> kept = views;
-  SoundFit sound{fit_camera(corners, kept, size_px), {}, {}};
-  for (std::size_t i = 0; i < views.size(); ++i) sound.used.push_back(i);
-  const std::size_t num_needed = std::max(kMinViews, views.size() - views.size() / 3);
-  while (kept.size() > num_needed) {
-    const std::optional<std::size_t> worst = worst_outlier(sound.fit);
-    if (!worst) break;
-    sound.left_out.push_back(sound.used[*worst]);
-    sound.used.erase(sound.used.begin() + static_cast<std::ptrdiff_t>(*worst));
-    kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(*worst));
-    sound.fit = fit_camera(corners, kept, size_px);
+SoundFit fit_to_sound_views(const std::vector<cv::Point3f>& board,
+                            const std::vector<Corners>& views, const cv::Size& size_px) {
+  SoundFit sound{fit_camera(board, views, size_px), {}, {}};
+  sound.used = views_of_one_camera(sound.fit, board, views, size_px);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!std::binary_search(sound.used.begin(), sound.used.end(), i)) sound.left_out.push_back(i);
   }
-  std::sort(sound.left_out.begin(), sound.left_out.end());
+  if (!sound.left_out.empty()) sound.fit = fit_camera(board, chosen(views, sound.used), size_px);
   return sound;
 }
 
-// Of a view that the camera was not fitted to, with the pose that suits it best.
-double rmse_of_other_view_px(const Fit& fit, const std::vector<cv::Point3f>& board,
-                             const std::vector<cv::Point2f>& view) {
-  cv::Mat turn;
-  cv::Mat shift;
-  cv::solvePnP(board, view, fit.k, fit.distortion, turn, shift);
-  std::vector<cv::Point2f> projected;
-  cv::projectPoints(board, turn, shift, fit.k, fit.distortion, projected);
-  return cv::norm(projected, view) / std::sqrt(static_cast<double>(view.size()));
-}
-
-std::vector<double> errors_of_views_px(const SoundFit& sound, const std::vector<cv::Point3f>& board,
-                                       const std::vector<std::vector<cv::Point2f>>& views) {
+// Each view's: of those that the camera is fitted to as fitted, of the others at their best.
+std::vector<double> view_errors_px(const SoundFit& sound, const std::vector<cv::Point3f>& board,
+                                   const std::vector<Corners>& views) {
   std::vector<double> errors_px(views.size());
+  if (!sound.left_out.empty()) errors_px = errors_of_views_px(sound.fit, board, views);
   for (std::size_t i = 0; i < sound.used.size(); ++i)
     errors_px[sound.used[i]] = sound.fit.view_rmse_px.at<double>(static_cast<int>(i));
-  for (const std::size_t view : sound.left_out)
-    errors_px[view] = rmse_of_other_view_px(sound.fit, board, views[view]);
   return errors_px;
 }
 
@@ -274,7 +337,7 @@ Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Poin
   require_plausible_view(camera);
   return {.camera = camera,
           .rmse_px = fit.rmse_px,
-          .view_rmse_px = errors_of_views_px(sound, corners, views),
+          .view_rmse_px = view_errors_px(sound, corners, views),
           .left_out = sound.left_out,
           .focal_sd_ratio = sd_ratio};
 }

@@ -37,7 +37,7 @@ struct Calibration {
 
 // The camera that saw the board in all views, each the corners of one picture of `size_px`: Zhang's
 // method (2000), refined with k1 k2 p1 p2. A view whose error is several times that of the others
-// (taken at another zoom, of a bent board) is left out, the worst first, up to a third of them.
+// (taken at another zoom, of a bent board) is left out, if two thirds of them agree.
 // Throws InputError for fewer than 3 views; if the boards
 // of all views are nearly parallel, for then no focal length is wrong; if fx and fy are not known
 // to 3 % (standard deviation); and if the field of view is that of no such lens (camera.hpp).

@@ -1,3 +1,5 @@
+#include <string>
+
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
@@ -15,7 +17,8 @@ bool read_own_rig(const Config& config, Recording& recording, const std::functio
     read();
     return true;
   } catch (const core::InputError& error) {
-    if (!is_replaced && config.needs_calibration) throw;
+    if (!is_replaced && config.needs_calibration)
+      throw core::InputError(std::string(error.what()) + "; --camera FILE stands in for it");
     if (!is_replaced) spdlog::warn("{}; the calibration is not used", error.what());
   }
   recording.rig = {};
