@@ -175,7 +175,7 @@ TEST_F(FileTest, APipeIsWrittenToAndStays) {
   const int reader = open((folder_ / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
   write_file(folder_ / "pipe", "bytes");
   char read_back[8] = {};
-  EXPECT_EQ(read(reader, read_back, sizeof read_back), 5);
+  EXPECT_EQ(::read(reader, read_back, sizeof read_back), 5);
   EXPECT_STREQ(read_back, "bytes");
   close(reader);
   EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));

@@ -38,7 +38,7 @@ void refuse_wide_text(const std::filesystem::path& path, std::string_view bytes)
 
 // CR LF and CR alone to LF.
 std::string with_line_feeds(std::string text) {
-  if (text.find('\r') == std::string::npos) return text;
+  if (std::count(text.begin(), text.end(), '\r') == 0) return text;
   std::string out;
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
