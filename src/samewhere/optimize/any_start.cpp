@@ -13,9 +13,10 @@ namespace samewhere::optimize {
 namespace {
 
 constexpr double kLess = 1.0 - 1e-6;  // of a cost, for another start to be the better one
-constexpr double kBelieved = 0.5;     // of a weight
-constexpr int kMoreIterations = 4;    // of graph_iterations, to the end
-constexpr double kSameCost = 1e-6;    // relative
+constexpr std::size_t kManyPoses = 2000;
+constexpr double kBelieved = 0.5;   // of a weight
+constexpr int kMoreIterations = 4;  // of graph_iterations, to the end
+constexpr double kSameCost = 1e-6;  // relative
 
 double chi2_of_all(const PoseGraph& graph) {
   double sum = 0.0;
@@ -69,11 +70,17 @@ PoseGraphSummary solve_one(PoseGraph& graph, const Config& config) {
   return solve_pose_graph(graph, config);
 }
 
-// Whether noise explains what is left, so that no other start can tell a better story.
-bool is_explained(const PoseGraph& graph, const PoseGraphSummary& summary) {
-  const auto num_refused = std::count_if(summary.weights.begin(), summary.weights.end(),
-                                         [](double weight) { return weight < kBelieved; });
-  return is_consistent(graph, 2.0 * summary.robust_cost, static_cast<std::size_t>(num_refused));
+// Whether noise explains what is left, so that no other start can end better; of a large graph,
+// where each start may take a minute, whether most loops are believed.
+bool is_good_enough(const PoseGraph& graph, const PoseGraphSummary& summary) {
+  const auto num_refused =
+      static_cast<std::size_t>(std::count_if(summary.weights.begin(), summary.weights.end(),
+                                             [](double weight) { return weight < kBelieved; }));
+  if (is_consistent(graph, 2.0 * summary.robust_cost, num_refused)) return true;
+  const auto num_loops = static_cast<std::size_t>(std::count_if(
+      graph.edges.begin(), graph.edges.end(), [](const PoseEdge& edge) { return edge.is_loop; }));
+  return graph.world_from_node.size() > kManyPoses && num_refused > 0 &&
+         2 * num_refused < num_loops;
 }
 
 }  // namespace
@@ -96,7 +103,7 @@ AnyStartSummary solve_from_any_start(PoseGraph& graph, const Config& config) {
   bool is_first = true;
   for (Start& start : starts_of(graph)) {
     PoseGraphSummary summary = solve_one(start.graph, config);
-    const bool is_over = is_explained(start.graph, summary);
+    const bool is_over = is_good_enough(start.graph, summary);
     if (is_first || summary.robust_cost < kLess * best.solution.robust_cost) {
       graph.world_from_node = std::move(start.graph.world_from_node);
       graph.log_scales = std::move(start.graph.log_scales);

@@ -21,9 +21,10 @@ struct AnyStartSummary {
 // from the origin. Solved about the first held node, which stays as it was to the last bit. The
 // starts are taken in the order of their squared errors; the first after which noise explains all
 // squared errors (their sum is within 5 standard deviations of its expectation, under 2 % of the
-// loops refused) is the answer, else the one that ended with the least robust cost. Then the
-// edges believed are solved to the end: PoseGraphSummary::has_converged says whether it was
-// reached within four times Config::graph_iterations.
+// loops refused), or of more than 2000 poses that refuses some loops but not half, is the answer,
+// else the one that ended with the least robust cost. Then the edges believed are solved to the
+// end: PoseGraphSummary::has_converged says whether it was reached within four times
+// Config::graph_iterations.
 AnyStartSummary solve_from_any_start(PoseGraph& graph, const Config& config);
 
 }  // namespace samewhere::optimize
