@@ -17,7 +17,9 @@ std::string name_of_match(const core::Candidate& candidate);
 
 // loops.json, version 1: for each candidate its last verdict with stage, reason, every score of its
 // Evidence by name, and match_from_query as [tx, ty, tz, qx, qy, qz, qw] or null. Scores that are
-// not finite are left out. "is_foretold": true where no search found the candidate,
+// not finite are left out; those of a geometry that was not found are null. "num_inliers" are of
+// "num_matches", which are those around the pose found; "num_first_matches": of the descriptors
+// alone, if these are others. "is_foretold": true where no search found the candidate,
 // "is_by_features": true where it was found by its features and not by its looks, "is_lost": true
 // where nobody knew where the view was taken; "is_by_hand": true where a person accepted it;
 // "overruled": the first of the loops that went for its sake; "query_session" and "match_session"

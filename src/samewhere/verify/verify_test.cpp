@@ -25,6 +25,7 @@ TEST(MeasureGeometry, FindsTheRelativePoseOfTheSamePlace) {
   ASSERT_TRUE(evidence.match_from_query);
   EXPECT_LT(core::log_r3so3(inverse(kMoved) * rigid_part(*evidence.match_from_query)).norm(),
             0.005);
+  EXPECT_GE(evidence.num_guided_matches, evidence.num_inliers);
   EXPECT_GT(evidence.num_inliers, 100);
   ASSERT_TRUE(evidence.disagreement_m && evidence.disagreement_rad);
   EXPECT_LT(*evidence.disagreement_m, 0.02);
