@@ -7,7 +7,7 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/input/camera_file.hpp>
-#include <samewhere/input/exif.hpp>
+#include <samewhere/input/exif_orientation.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
 

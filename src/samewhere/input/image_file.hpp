@@ -13,7 +13,7 @@ bool is_picture(std::string_view bytes);
 // The picture in a JPEG, PNG, BMP, PNM, TIFF or WebP file (told by its content, not by its name):
 // 8-bit BGR, or 8-bit grey if it is stored so, rows x columns. An alpha channel is dropped, 16 bits
 // a channel are scaled to 8, inks (CMYK) become colours. Pixels are given as they are stored: a
-// rotation noted in EXIF is not applied (exif.hpp), because a calibration refers to the sensor.
+// rotation noted in EXIF is not applied (exif_orientation.hpp), because a calibration refers to the sensor.
 // Throws InputError naming the file if it cannot be read, is of another format, is damaged or cut
 // short.
 cv::Mat read_image(const std::filesystem::path& path);

@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include <samewhere/core/random.hpp>
-#include <samewhere/input/exif.hpp>
+#include <samewhere/input/exif_orientation.hpp>
 #include <samewhere/input/image_file.hpp>
 #include <samewhere/input/test_folder.hpp>
 

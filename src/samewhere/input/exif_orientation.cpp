@@ -1,7 +1,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <samewhere/input/exif.hpp>
+#include <samewhere/input/exif_orientation.hpp>
 
 namespace samewhere::input {
 namespace {
