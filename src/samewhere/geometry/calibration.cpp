@@ -236,7 +236,7 @@ std::vector<std::size_t> drawn(std::size_t num_views, std::size_t count, core::R
 std::vector<double> errors_by_least_median_px(const std::vector<cv::Point3f>& board,
                                               const std::vector<Corners>& views,
                                               const cv::Size& size_px) {
-  constexpr int kNumDraws = 40;
+  constexpr int kNumDraws = 20;
   constexpr std::size_t kNumDrawn = 4;
   core::Random random(1);
   std::vector<double> best_px;
@@ -263,19 +263,25 @@ std::vector<std::size_t> views_below(const std::vector<double>& errors_px, doubl
 }
 
 // The views of one camera: those that err by no more than several times the median. All of them if
-// all err little, or if fewer than two thirds agree.
+// all err little or alike, or if fewer than two thirds agree.
 std::vector<std::size_t> views_of_one_camera(const Fit& fit_to_all,
                                              const std::vector<cv::Point3f>& board,
                                              const std::vector<Corners>& views,
                                              const cv::Size& size_px) {
   constexpr double kManyTimes = 3.0;
+  constexpr double kDetector_px = 0.15;  // errors of sound views, however many times their median
+  constexpr double kEvenRatio = 1.3;     // noise alone makes views differ by less
   constexpr int kNumRounds = 3;
   std::vector<std::size_t> all(views.size());
   std::iota(all.begin(), all.end(), 0);
   const std::size_t num_needed = std::max(kMinViews, views.size() - views.size() / 3);
   const double worst_px = *std::max_element(fit_to_all.view_rmse_px.begin<double>(),
                                             fit_to_all.view_rmse_px.end<double>());
-  if (worst_px <= kMinError_px || num_needed == views.size()) return all;
+  const double median_px =
+      core::median({fit_to_all.view_rmse_px.begin<double>(), fit_to_all.view_rmse_px.end<double>()})
+          .value_or(worst_px);
+  const bool is_even = worst_px <= kDetector_px || worst_px <= kEvenRatio * median_px;
+  if (is_even || num_needed == views.size()) return all;
   std::vector<double> errors_px = errors_by_least_median_px(board, views, size_px);
   std::vector<std::size_t> sound;
   for (int round = 0; round < kNumRounds; ++round) {
