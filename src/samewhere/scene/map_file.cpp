@@ -279,11 +279,11 @@ void MapFile::Content::put_change(const char* table, std::int64_t number, const 
 }
 
 std::uint64_t MapFile::Content::rig_number(const core::Rig& rig, MapState& state) {
+  require_readable(path(), kRig, static_cast<std::int64_t>(rigs_.size()), rig);
   const std::string bytes = bytes_of(rig);
   for (std::size_t i = 0; i < rigs_.size(); ++i) {
     if (rigs_[i].get() == &rig || bytes_of(*rigs_[i]) == bytes) return i;
   }
-  require_readable(path(), kRig, static_cast<std::int64_t>(rigs_.size()), rig);
   file_.put(kRig, static_cast<std::int64_t>(rigs_.size()), bytes);
   rigs_.push_back(std::make_shared<const core::Rig>(rig));
   return state.num_rigs++;

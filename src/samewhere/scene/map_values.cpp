@@ -79,14 +79,17 @@ bool is_frame(core::FrameId frame) {
   return frame.session() <= kMaxSession && frame.index() <= core::FrameId::kMaxIndex;
 }
 
+// Pictures of the other models are those of an ideal pinhole by then (core/rig.hpp).
 bool is_camera(const core::Camera& camera) {
-  const auto& c = std::get<core::PinholeRadtan>(camera);
+  const auto* pinhole = std::get_if<core::PinholeRadtan>(&camera);
+  if (pinhole == nullptr) return false;
+  const core::PinholeRadtan& c = *pinhole;
   const auto is_side = [](int side_px) { return side_px >= 0 && side_px <= kMaxSide_px; };
   const auto is_focal = [](double focal_px) { return focal_px > 0.0 && focal_px <= kMaxFocal_px; };
   const auto is_centre = [](double px) { return std::abs(px) <= kMaxFocal_px; };
   const auto coefficients = {c.k1, c.k2, c.p1, c.p2, c.k3};
   return is_side(c.width_px) && is_side(c.height_px) && is_focal(c.fx_px) && is_focal(c.fy_px) &&
-         is_centre(c.cx_px) && is_centre(c.cy_px) &&
+         is_centre(c.cx_px) && is_centre(c.cy_px) && c.k4 == 0.0 && c.k5 == 0.0 && c.k6 == 0.0 &&
          std::ranges::all_of(coefficients, [](double k) { return std::abs(k) <= kMaxDistortion; });
 }
 
