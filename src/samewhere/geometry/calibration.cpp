@@ -275,11 +275,10 @@ std::vector<std::size_t> views_of_one_camera(const Fit& fit_to_all,
   std::vector<std::size_t> all(views.size());
   std::iota(all.begin(), all.end(), 0);
   const std::size_t num_needed = std::max(kMinViews, views.size() - views.size() / 3);
-  const double worst_px = *std::max_element(fit_to_all.view_rmse_px.begin<double>(),
-                                            fit_to_all.view_rmse_px.end<double>());
-  const double median_px =
-      core::median({fit_to_all.view_rmse_px.begin<double>(), fit_to_all.view_rmse_px.end<double>()})
-          .value_or(worst_px);
+  const std::vector<double> fitted_px(fit_to_all.view_rmse_px.begin<double>(),
+                                      fit_to_all.view_rmse_px.end<double>());
+  const double worst_px = *std::max_element(fitted_px.begin(), fitted_px.end());
+  const double median_px = core::median(fitted_px).value_or(worst_px);
   const bool is_even = worst_px <= kDetector_px || worst_px <= kEvenRatio * median_px;
   if (is_even || num_needed == views.size()) return all;
   std::vector<double> errors_px = errors_by_least_median_px(board, views, size_px);
