@@ -39,8 +39,8 @@ scene::MapVersion first_map(core::Source& source, const Config& given) {
     if (!frame) break;
     slam.feed(*frame);
     const core::FramePose& pose = slam.frames().back();
-    const auto num_keyframes = static_cast<int>(pose.reference_keyframe.index()) + 1;
-    if (pose.is_measured && num_keyframes >= config.input.focal_length_keyframes) break;
+    const auto wanted = static_cast<std::uint64_t>(config.input.focal_length_keyframes);
+    if (pose.is_measured && pose.reference_keyframe.index() + 1 >= wanted) break;
   }
   slam.finish();
   return slam.map();
@@ -50,8 +50,10 @@ std::optional<optimize::FocalLengthFit> fit(const scene::MapVersion& map, const 
   constexpr std::size_t kMinKeyframes = 8;
   const map::BundleWindow window = map::window_of_all(map, config.map);
   if (window.free.size() < kMinKeyframes) return std::nullopt;
-  return optimize::fit_focal_length(map::bundle_problem(map, window, config.features),
-                                    kGuess_sigma);
+  optimize::BundleProblem problem = map::bundle_problem(map, window, config.features);
+  // how two keyframes lie to each other was found with the wrong focal length, too
+  for (std::size_t i = 0; i + 1 < problem.cameras.size(); ++i) problem.cameras[i].is_fixed = false;
+  return optimize::fit_focal_length(problem, kGuess_sigma);
 }
 
 // A map made with a focal length far off is bent: it is made once more with the better one.
