@@ -9,9 +9,7 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr std::size_t kPoseSize = 7;
-constexpr std::size_t kPointSize = 3;
-constexpr std::size_t kMinObservations = 200;
+constexpr std::size_t kMinFocalObservations = 200;
 
 // Of one observation, by the pose, the point and the logarithm of found / assumed focal length.
 class FocalCost : public ceres::SizedCostFunction<2, kPoseSize, kPointSize, 1> {
@@ -141,7 +139,7 @@ std::optional<FocalLengthFit> fit_focal_length(const BundleProblem& problem, dou
   const bool is_held = std::any_of(problem.cameras.begin(), problem.cameras.end(),
                                    [](const BundleCamera& camera) { return camera.is_fixed; });
   core::require(is_held || problem.cameras.empty(), "a bundle has a fixed camera");
-  if (problem.observations.size() < kMinObservations) return std::nullopt;
+  if (problem.observations.size() < kMinFocalObservations) return std::nullopt;
   FocalBundle bundle(problem);
   const double least = bundle.minimise(prior_sigma, true);
   const double found = bundle.log_ratio();
