@@ -126,7 +126,7 @@ void require_realtime_as_told(const std::string& source, const core::SourceInfo&
   }
 }
 
-pipeline::Config config_of(const RunCommand& command) {
+pipeline::Config config_of(const RunCommand& command, Work work) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
@@ -169,7 +169,7 @@ int report_errors(const std::vector<std::string>& errors, bool is_interrupted) {
 }
 
 int execute(const RunCommand& command, Work work) {
-  const pipeline::Config config = config_of(command);
+  const pipeline::Config config = config_of(command, work);
   report::ResultsFolder results(place_for_results(command, config.source));
   auto source = pipeline::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
