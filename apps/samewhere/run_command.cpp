@@ -132,17 +132,14 @@ void require_realtime_as_told(const std::string& source, const core::SourceInfo&
 
 // Where the camera was estimated, the run's folder says what it was: for later runs, and for
 // commands that open the recording again.
-pipeline::Config with_camera_kept(pipeline::Config config,
-                                  const std::optional<pipeline::SelfCalibration>& calibration,
-                                  const std::filesystem::path& folder) {
-  if (!calibration) return config;
-  const std::filesystem::path file = std::filesystem::absolute(folder / "camera.txt");
-  core::replace_file(file, input::camera_file_text(calibration->camera));
-  config.input.camera = file.string();
+pipeline::Config with_estimated_camera(pipeline::Config config,
+                                       const std::optional<pipeline::SelfCalibration>& calibration,
+                                       const std::filesystem::path& folder) {
+  if (calibration) config.input.camera = std::filesystem::absolute(folder / "camera.txt").string();
   return config;
 }
 
-pipeline::Config config_of(const RunCommand& command) {
+pipeline::Config config_of(const RunCommand& command, Work work) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
@@ -156,13 +153,15 @@ pipeline::Config config_of(const RunCommand& command) {
 
 // At the first good frame. Before, Ctrl-C ends the process at once: there is nothing to finish.
 // Settings that find no room are no reason to see nothing: the results are tried, too.
-std::filesystem::path begin_results(
-    report::ResultsFolder& results, const pipeline::Config& config,
-    const std::optional<pipeline::SelfCalibration>& calibration) {
+std::filesystem::path begin_results(report::ResultsFolder& results, const pipeline::Config& config,
+                                    const std::optional<pipeline::SelfCalibration>& calibration) {
   core::catch_interrupts();
   results.begin();
   try {
-    const pipeline::Config kept = with_camera_kept(config, calibration, results.path());
+    if (calibration)
+      core::replace_file(results.path() / "camera.txt",
+                         input::camera_file_text(calibration->camera));
+    const pipeline::Config kept = with_estimated_camera(config, calibration, results.path());
     core::replace_file(results.path() / "config.yaml", core::config_as_yaml(kept));
   } catch (const core::InputError& error) {
     spdlog::warn("{}; the run goes on", error.what());
@@ -188,7 +187,7 @@ int report_errors(const std::vector<std::string>& errors, bool is_interrupted) {
 }
 
 int execute(const RunCommand& command, Work work) {
-  const pipeline::Config config = config_of(command);
+  const pipeline::Config config = config_of(command, work);
   report::ResultsFolder results(place_for_results(command, config.source));
   auto source = pipeline::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
@@ -204,6 +203,8 @@ int execute(const RunCommand& command, Work work) {
   if (calibration) record.figures.push_back(pipeline::focal_length_figure(*calibration));
   std::vector<std::string> errors;
   if (results.has_begun()) {
+    record.config_yaml =
+        core::config_as_yaml(with_estimated_camera(config, calibration, results.path()));
     errors = write(outcome, work, results.path());
     print_outcome(outcome, results.path());
   } else if (!record.input_error && !record.is_interrupted) {
