@@ -44,7 +44,7 @@ cv::Mat picture(const core::Camera& camera, const core::Rigid3& world_from_camer
   return image;
 }
 
-double difference(const cv::Mat& a, const cv::Mat& b) {
+double difference_of_whole(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total());
 }
 
@@ -76,7 +76,7 @@ TEST(Straighten, AFisheyesPictureBecomesThatOfAnIdealPinhole) {
   ASSERT_TRUE(geometry::is_brown(pinhole));
   EXPECT_NEAR(geometry::horizontal_field_of_view_rad(pinhole) * 180.0 / 3.14159, kWidestPinhole_deg,
               0.5);
-  EXPECT_LT(difference(frame.images[0], picture(pinhole)), 1.0);
+  EXPECT_LT(difference_of_whole(frame.images[0], picture(pinhole)), 1.0);
 }
 
 TEST(Straighten, SoDoesThatOfARationalLens) {
@@ -86,7 +86,7 @@ TEST(Straighten, SoDoesThatOfARationalLens) {
   const core::Frame frame = passed({.cameras = {lens}, .body_from_camera = {{}}}, {picture(lens)});
   EXPECT_TRUE(geometry::is_brown(frame.rig->cameras[0]));
   EXPECT_EQ(geometry::pinhole(frame.rig->cameras[0]).k1, 0.0);
-  EXPECT_LT(difference(frame.images[0], picture(frame.rig->cameras[0])), 1.0);
+  EXPECT_LT(difference_of_whole(frame.images[0], picture(frame.rig->cameras[0])), 1.0);
 }
 
 TEST(Straighten, DepthAlongTheOpticalAxisFollows) {
@@ -105,7 +105,7 @@ TEST(Straighten, APairOfFisheyesIsRectified) {
              {picture(kFisheye), picture(second, left_from_right)});
   ASSERT_TRUE(core::is_rectified_pair(*frame.rig));
   // of a world infinitely far away both see the same
-  EXPECT_LT(difference(frame.images[0], frame.images[1]), 1.5);
+  EXPECT_LT(difference_of_whole(frame.images[0], frame.images[1]), 1.5);
 }
 
 TEST(Straighten, BrownsCameraPassesAsItIs) {

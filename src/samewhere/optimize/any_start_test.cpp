@@ -10,10 +10,10 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr double kSigma_m = 0.02;
-constexpr double kSigma_rad = 0.1;
+constexpr double kStep_m = 0.02;
+constexpr double kTurn_rad = 0.1;
 
-// Twice around a circle; odometry that turns by kSigma_rad a step ends somewhere else.
+// Twice around a circle; odometry that turns by kTurn_rad a step ends somewhere else.
 PoseGraph circle(int num_poses, bool is_planar, const std::vector<std::pair<int, int>>& loops) {
   core::Random random(3);
   PoseGraph graph;
@@ -26,7 +26,7 @@ PoseGraph circle(int num_poses, bool is_planar, const std::vector<std::pair<int,
   }
   const auto add = [&](int a, int b, bool is_loop) {
     core::Vector6d sigma;
-    sigma << Eigen::Vector3d::Constant(kSigma_m), Eigen::Vector3d::Constant(kSigma_rad);
+    sigma << Eigen::Vector3d::Constant(kStep_m), Eigen::Vector3d::Constant(kTurn_rad);
     core::Vector6d error;
     for (int i = 0; i < 6; ++i) error(i) = sigma(i) * random.gaussian();
     if (is_planar) error.segment<3>(2).setZero();
