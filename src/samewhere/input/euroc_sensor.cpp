@@ -45,7 +45,9 @@ core::Rigid3 body_from(const YamlKeys& sensor) {
                                rows.place, distance_m, geometry::kMaxBaseline_m));
 }
 
-YamlKeys read_sensor(const path& file) { return {file, core::read_file(file, core::kSettingsLimit)}; }
+YamlKeys read_sensor(const path& file) {
+  return {file, core::read_file(file, core::kSettingsLimit)};
+}
 
 }  // namespace
 

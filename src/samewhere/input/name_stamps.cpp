@@ -164,7 +164,8 @@ std::vector<double> in_seconds(const std::vector<std::int64_t>& numbers, std::in
   std::vector<double> stamps_s;
   for (const std::int64_t number : numbers) {
     // whole seconds apart: nanoseconds since 1970 have more digits than a double
-    stamps_s.push_back(static_cast<double>(number / per_s) +
+    const std::int64_t whole_s = number / per_s;
+    stamps_s.push_back(static_cast<double>(whole_s) +
                        static_cast<double>(number % per_s) / static_cast<double>(per_s));
   }
   return stamps_s;

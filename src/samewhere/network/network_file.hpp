@@ -19,8 +19,8 @@ struct NetworkFile {
   cv::Size input_px;
 };
 
-// The file that a setting names, as core::find_model() finds it. Throws InputError naming the setting
-// and both places if it is in neither.
+// The file that a setting names, as core::find_model() finds it. Throws InputError naming the
+// setting and both places if it is in neither.
 std::filesystem::path find_network(const std::string& setting, const std::string& file);
 
 // Reads the file and the description of its ends. Throws InputError naming the file, what it holds

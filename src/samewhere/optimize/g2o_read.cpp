@@ -239,7 +239,7 @@ class Reader {
   // gets next to nothing. What is clearly indefinite is refused: a sign or the order is wrong.
   Eigen::MatrixXd projected(const core::TextLine& line, const Eigen::MatrixXd& given) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(given);
-    const Eigen::VectorXd values = solver.eigenvalues();
+    const Eigen::VectorXd& values = solver.eigenvalues();
     const double largest = values(values.size() - 1);
     if (solver.info() != Eigen::Success || !(largest > 0.0) ||
         values(0) < -kMaxNegative * largest) {
