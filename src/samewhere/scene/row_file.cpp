@@ -102,29 +102,37 @@ void check_schema(Database& database, const FileKind& kind) {
     refuse(database.path(), fmt::format("is damaged: it lacks {} of its tables", expected.size()));
 }
 
+// All of it, down to the disk. Returns the system's error number, or 0.
+int write_whole(int file, std::string_view bytes) {
+  const ssize_t num_written = ::write(file, bytes.data(), bytes.size());
+  if (num_written < 0) return errno;
+  if (static_cast<std::size_t>(num_written) < bytes.size()) return ENOSPC;
+  return ::fsync(file) == 0 ? 0 : errno;
+}
+
+// Gives the draft its name, which no other file may have: by a link, or where the file system has
+// none, by another name for it.
+int give_name(const std::string& draft, const std::filesystem::path& path) {
+  if (::link(draft.c_str(), path.c_str()) == 0) return 0;
+  const int error = errno;
+  const bool has_no_links = error == EPERM || error == EOPNOTSUPP || error == ENOSYS;
+  if (!has_no_links || std::filesystem::exists(path)) return error;
+  return ::rename(draft.c_str(), path.c_str()) == 0 ? 0 : errno;
+}
+
 // A new file with these bytes, whole or not at all.
 void publish(const std::filesystem::path& path, std::string_view bytes) {
   const std::string draft = fmt::format("{}.{}.new", path.string(), ::getpid());
-  const auto refuse_for = [&](int error) {
-    ::unlink(draft.c_str());
-    if (error == EEXIST) refuse(path, "is there already; expected a new file");
-    refuse(path, fmt::format("cannot be opened to be written ({})",
-                             std::generic_category().message(error)));
-  };
   const int file =
       ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
-  if (file < 0) refuse_for(errno);
-  const ssize_t num_written = ::write(file, bytes.data(), bytes.size());
-  int error = num_written < 0 ? errno : 0;
-  if (error == 0 && static_cast<std::size_t>(num_written) < bytes.size()) error = ENOSPC;
-  if (error == 0 && ::fsync(file) != 0) error = errno;
-  ::close(file);
-  if (error == 0 && ::link(draft.c_str(), path.c_str()) != 0) error = errno;
-  const bool has_no_links = error == EPERM || error == EOPNOTSUPP || error == ENOSYS;
-  if (has_no_links && !std::filesystem::exists(path))
-    error = ::rename(draft.c_str(), path.c_str()) == 0 ? 0 : errno;
-  if (error != 0) refuse_for(error);
+  int error = file < 0 ? errno : write_whole(file, bytes);
+  if (file >= 0) ::close(file);
+  if (error == 0) error = give_name(draft, path);
   ::unlink(draft.c_str());
+  if (error == 0) return;
+  if (error == EEXIST) refuse(path, "is there already; expected a new file");
+  refuse(path, fmt::format("cannot be opened to be written ({})",
+                           std::generic_category().message(error)));
 }
 
 // A folder of this program alone, removed with its last owner.
