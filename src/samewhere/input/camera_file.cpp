@@ -8,7 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/file.hpp>
+#include <samewhere/core/text_file.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/calibration_files.hpp>
@@ -29,33 +29,39 @@ bool has_key(std::string_view line) {
   return colon != std::string_view::npos && (is_letter(line.front()) || line.front() == '"');
 }
 
+// Numbers, or a name that a row of ours begins with; or a camera of COLMAP: number, model, ...
+Format format_of_words(const std::string& line) {
+  std::istringstream words(line);
+  std::string one;
+  std::string two;
+  words >> one >> two;
+  if (!two.empty() && is_letter(two.front()) && two != "nan" && two != "inf")
+    return Format::kColmap;
+  const bool is_named = one == "fisheye" || one == "depth_factor";
+  return is_letter(one.front()) && !is_named ? Format::kUnknown : Format::kRows;
+}
+
+Format format_of_line(const std::string& line) {
+  if (line.front() == '<') return Format::kXml;
+  if (line.front() == '{' || line.starts_with("---") || has_key(line)) return Format::kYaml;
+  return format_of_words(line);
+}
+
 // By the first line that says something.
 Format format_of(const std::string& text) {
   if (text.find('\0') != std::string::npos) return Format::kUnknown;
   if (text.starts_with("%YAML")) return Format::kYaml;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t first = line.find_first_not_of(" \t\r\xEF\xBB\xBF");
-    if (first == std::string::npos || line[first] == '#') continue;
-    line.erase(0, first);
-    if (line.starts_with("---")) return Format::kYaml;
-    if (line.front() == '<') return Format::kXml;
-    if (line.front() == '{' || has_key(line)) return Format::kYaml;
-    std::istringstream words(line);
-    std::string one;
-    std::string two;
-    words >> one >> two;
-    if (!two.empty() && is_letter(two.front()) && two != "nan" && two != "inf")
-      return Format::kColmap;
-    const bool is_named = one == "fisheye" || one == "depth_factor";
-    return is_letter(one.front()) && !is_named ? Format::kUnknown : Format::kRows;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first != std::string::npos && line[first] != '#') return format_of_line(line.substr(first));
   }
   return Format::kRows;
 }
 
 Calibration read_calibration(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMostBytes = 64U << 20U;  // transforms.json lists all pictures, too
-  const std::string text = core::read_file(path);
+  const std::string text = core::read_text(path);
   if (text.size() > kMostBytes) {
     throw InputError(fmt::format("{}: is {} MiB large, expected a camera file of at most {}",
                                  path.string(), text.size() >> 20U, kMostBytes >> 20U));

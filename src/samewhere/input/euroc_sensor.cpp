@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/file.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/calibration_files.hpp>
@@ -45,9 +44,7 @@ core::Rigid3 body_from(const YamlKeys& sensor) {
                                rows.place, distance_m, geometry::kMaxBaseline_m));
 }
 
-YamlKeys read_sensor(const path& file) {
-  return {file, core::read_file(file, core::kSettingsLimit)};
-}
+YamlKeys read_sensor(const path& file) { return {file, core::read_text(file)}; }
 
 }  // namespace
 
