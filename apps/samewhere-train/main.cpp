@@ -18,6 +18,7 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/train/commit.hpp>
 #include <samewhere/train/network_file.hpp>
 
@@ -52,10 +53,10 @@ ImageSet read(const Job& job) {
                                 });
   progress.reset();
   for (const SourceCount& source : images.sources) {
-    fmt::print("{}: {} images", source.source, source.num_images);
+    core::print("{}: {} images", source.source, source.num_images);
     if (source.num_unreadable > 0)
-      fmt::print(", {} unreadable ones skipped", source.num_unreadable);
-    fmt::print("\n");
+      core::print(", {} unreadable ones skipped", source.num_unreadable);
+    core::print("\n");
   }
   return images;
 }
@@ -71,18 +72,20 @@ bool run_epoch(Trainer& trainer, int num_epochs) {
   if (!figures) return false;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   const bool is_best = trainer.best_epoch().epoch == epoch;
-  fmt::print("epoch {}/{}: loss {:.4f} training, {:.4f} validation{}, {:.1f} images/s\n", epoch,
-             num_epochs, figures->training_error, figures->validation_error,
-             is_best ? " (best)" : "",
-             static_cast<double>(trainer.split().training.size()) / elapsed.count());
+  core::print("epoch {}/{}: loss {:.4f} training, {:.4f} validation{}, {:.1f} images/s\n", epoch,
+              num_epochs, figures->training_error, figures->validation_error,
+              is_best ? " (best)" : "",
+              static_cast<double>(trainer.split().training.size()) / elapsed.count());
   std::fflush(stdout);
   return true;
 }
 
 int interrupted(const Trainer& trainer) {
-  fmt::print(stderr, "samewhere: interrupted after epoch {}; the same command goes on from there\n",
-             trainer.history().size());
-  return core::kInterruptedExit;
+  return core::complain(
+      "samewhere",
+      fmt::format("interrupted after epoch {}; the same command goes on from there",
+                  trainer.history().size()),
+      core::kInterruptedExit);
 }
 
 int train(const Job& job) {
@@ -90,9 +93,10 @@ int train(const Job& job) {
   const ImageSet images = read(job);
   if (core::is_interrupted()) return core::kInterruptedExit;
   Trainer trainer(job.config, images, checkpoint_of(job.out), kCommit);
-  fmt::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
-             trainer.split().validation.size());
-  if (!trainer.history().empty()) fmt::print("going on after epoch {}\n", trainer.history().size());
+  core::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
+              trainer.split().validation.size());
+  if (!trainer.history().empty())
+    core::print("going on after epoch {}\n", trainer.history().size());
   if (trainer.commits().size() > 1) {
     spdlog::warn("begun by another program: trained by the commits {}",
                  fmt::join(trainer.commits(), ", "));
@@ -102,7 +106,7 @@ int train(const Job& job) {
       return interrupted(trainer);
   }
   const Quality quality = write_network(job, images, trainer);
-  fmt::print(
+  core::print(
       "{}: epoch {}, validation loss {:.4f}, recognition of warped views {:.1f} % (HOG {:.1f} %)\n",
       job.out.string(), quality.best.epoch, quality.best.validation_error,
       100.0 * quality.recognition, 100.0 * quality.recognition_of_hog);

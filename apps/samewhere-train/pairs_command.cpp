@@ -11,6 +11,7 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/train/commit.hpp>
 #include <samewhere/train/pair_network_file.hpp>
 
@@ -35,10 +36,10 @@ bool run_epoch(PairTrainer& trainer, int num_epochs) {
   progress.finish();
   if (!figures) return false;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  fmt::print("epoch {}/{}: loss {:.4f} training, {:.4f} validation{}, {:.1f} pairs/s\n", epoch,
-             num_epochs, figures->training_error, figures->validation_error,
-             trainer.best_epoch().epoch == epoch ? " (best)" : "",
-             trainer.num_training() / elapsed.count());
+  core::print("epoch {}/{}: loss {:.4f} training, {:.4f} validation{}, {:.1f} pairs/s\n", epoch,
+              num_epochs, figures->training_error, figures->validation_error,
+              trainer.best_epoch().epoch == epoch ? " (best)" : "",
+              trainer.num_training() / elapsed.count());
   std::fflush(stdout);
   return true;
 }
@@ -46,8 +47,8 @@ bool run_epoch(PairTrainer& trainer, int num_epochs) {
 PairSet prepare(const PairJob& job) {
   PairSet set = prepared_pairs(job);
   for (const PairSource& source : set.sources) {
-    fmt::print("{}: {} pairs of one place, {} of two that look alike{}\n", source.source,
-               source.num_same, source.num_wrong, source.is_held_back ? " (to validate)" : "");
+    core::print("{}: {} pairs of one place, {} of two that look alike{}\n", source.source,
+                source.num_same, source.num_wrong, source.is_held_back ? " (to validate)" : "");
   }
   std::fflush(stdout);
   return set;
@@ -57,20 +58,22 @@ int train(const PairJob& job) {
   require_writable_network(job.out);
   const PairSet set = prepare(job);
   PairTrainer trainer(job.config, set, checkpoint_of(job.out), kCommit);
-  if (!trainer.history().empty()) fmt::print("going on after epoch {}\n", trainer.history().size());
+  if (!trainer.history().empty())
+    core::print("going on after epoch {}\n", trainer.history().size());
   if (trainer.commits().size() > 1) {
     spdlog::warn("begun by another program: trained by the commits {}",
                  fmt::join(trainer.commits(), ", "));
   }
   while (!trainer.is_done()) {
     if (!core::is_interrupted() && run_epoch(trainer, job.config.epochs)) continue;
-    fmt::print(stderr,
-               "samewhere: interrupted after epoch {}; the same command goes on from there\n",
-               trainer.history().size());
-    return core::kInterruptedExit;
+    return core::complain(
+        "samewhere",
+        fmt::format("interrupted after epoch {}; the same command goes on from there",
+                    trainer.history().size()),
+        core::kInterruptedExit);
   }
   const PairQuality quality = write_pair_network(job, set, trainer);
-  fmt::print(
+  core::print(
       "{}: epoch {}, validation loss {:.4f}, AUC {:.3f}, {:.1f} % of true pairs kept at 1 % "
       "wrong\n",
       job.out.string(), quality.best.epoch, quality.best.validation_error, quality.separation.auc,

@@ -1,11 +1,15 @@
-// The plugin that reads videos and cameras, by OpenCV's videoio: see input/video_decoder.hpp.
+// The plugin that reads videos and cameras, by OpenCV's videoio, and the rarer formats of pictures,
+// by its imgcodecs: see input/video_decoder.hpp.
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
+#include <iostream>
 #include <memory>
 
 #include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include <samewhere/input/video_decoder.hpp>
@@ -34,6 +38,11 @@ class OpencvDecoder : public VideoDecoder {
     return static_cast<int>(std::clamp(capture_.get(cv::CAP_PROP_FRAME_COUNT), 0.0, kMost));
   }
 
+  int rotation_degrees() const override {
+    const auto degrees = static_cast<int>(std::lround(capture_.get(cv::CAP_PROP_ORIENTATION_META)));
+    return degrees == 90 || degrees == 180 || degrees == 270 ? degrees : 0;
+  }
+
   VideoPicture next() override {
     VideoPicture picture;
     if (!capture_.read(picture.image)) return {};
@@ -48,6 +57,21 @@ class OpencvDecoder : public VideoDecoder {
   cv::VideoCapture capture_;
 };
 
+// While it lives, std::cerr says nothing: what is wrong is told in one line, by the caller.
+class QuietErrors {
+ public:
+  QuietErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+  ~QuietErrors() {
+    std::cerr.rdbuf(buffer_);
+    std::cerr.clear();
+  }
+
+ private:
+  std::streambuf* buffer_;
+};
+
 }  // namespace
 }  // namespace samewhere::input
 
@@ -56,6 +80,22 @@ extern "C" samewhere::input::VideoDecoder* samewhere_open_video(const char* path
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   constexpr const char* kQuiet = "-8";  // AV_LOG_QUIET
   setenv("OPENCV_FFMPEG_LOGLEVEL", kQuiet, 0);
+  // a playlist that has the name of a video must not fetch from elsewhere
+  setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "protocol_whitelist;file", 0);
   auto decoder = std::make_unique<samewhere::input::OpencvDecoder>(path, is_camera);
   return decoder->is_open() ? decoder.release() : nullptr;
+}
+
+extern "C" bool samewhere_decode_picture(const unsigned char* bytes, std::size_t num_bytes,
+                                         cv::Mat& image) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  const samewhere::input::QuietErrors quiet;
+  try {
+    const cv::Mat encoded(1, static_cast<int>(num_bytes), CV_8UC1,
+                          const_cast<unsigned char*>(bytes));  // NOLINT: it is only read
+    image = cv::imdecode(encoded, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    return false;
+  }
+  return !image.empty();
 }

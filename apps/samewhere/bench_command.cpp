@@ -15,6 +15,7 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/pipeline/blind_spot.hpp>
 #include <samewhere/pipeline/described_recording.hpp>
 #include <samewhere/pipeline/paper_curves.hpp>
@@ -64,7 +65,7 @@ class PaperOutput {
 
  private:
   void say(const std::string& text) {
-    fmt::print("{}", text);
+    core::print("{}", text);
     std::fflush(stdout);
     text_ += text;
     write("tables.txt", text_);

@@ -1,10 +1,9 @@
 #include <cstdio>
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "commands.hpp"
 #include "options.hpp"
+#include <samewhere/core/terminal.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -16,8 +15,8 @@ struct ConfigCommand {
 
 void print(const ConfigCommand& command) {
   const pipeline::Config config = load(command.config);
-  fmt::print("{}",
-             command.as_table ? core::config_as_table(config) : core::config_as_yaml(config, true));
+  core::print(
+      "{}", command.as_table ? core::config_as_table(config) : core::config_as_yaml(config, true));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/folder_lock.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/pipeline/dense_maps.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
@@ -27,7 +29,9 @@ void execute(const DenseCommand& command) {
   for (const auto& assignment : command.assignments) core::set_config(config, assignment);
   pipeline::DenseFiles files = command.files;
   const bool asks_for_grid = !files.grid.empty();
+  std::optional<core::FolderLock> lock;  // no run may replace what is there meanwhile
   if (files.cloud.empty() && files.grid.empty() && files.octree.empty()) {
+    lock.emplace(run);
     files = {run / "cloud.ply", run / "map", run / "map.bt"};
   }
   const pipeline::DenseOutcome outcome = pipeline::make_dense_maps(run, config, files);

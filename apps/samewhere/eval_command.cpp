@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include "print.hpp"
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
 
 namespace samewhere::app {
@@ -48,7 +49,7 @@ void add_eval_command(CLI::App& app) {
       "  samewhere eval runs/twin-corridors --stages");
   sub->callback([command] {
     if (command->stages) {
-      fmt::print("{}", report::as_text(pipeline::stages_of_folder(command->folder)));
+      core::print("{}", report::as_text(pipeline::stages_of_folder(command->folder)));
       return;
     }
     print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder, command->truth)

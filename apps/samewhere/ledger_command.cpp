@@ -13,6 +13,8 @@
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/printable.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/pipeline/by_hand.hpp>
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
@@ -57,7 +59,8 @@ std::string lines_of(const core::Ledger& rows) {
   text = line + "  why\n";
   for (const core::LedgerRow& row : rows) {
     std::getline(lines, line);
-    text += line + "  " + core::reason_of(row.verdict) + "\n";
+    text += fmt::format("{}  {}\n", line,
+                        core::printable_line(core::reason_of(row.verdict), core::kMaxMessage));
   }
   return text;
 }
@@ -66,7 +69,7 @@ void list(const LedgerCommand& command) {
   core::Ledger wanted;
   for (const core::LedgerRow& row : pipeline::ledger_of_run(command.folder))
     if (is_wanted(row, command)) wanted.push_back(row);
-  fmt::print("{}", lines_of(wanted));
+  core::print("{}", lines_of(wanted));
 }
 
 void show(const LedgerCommand& command) {
@@ -75,7 +78,7 @@ void show(const LedgerCommand& command) {
   print_figures(figures_of(row, pipeline::config_of_run(command.folder).verify));
   if (command.picture.empty()) return;
   core::write_file(command.picture, report::pair_svg(pipeline::pair_of_run(command.folder, row)));
-  fmt::print("{}\n", command.picture);
+  core::print("{}\n", command.picture);
 }
 
 core::Ledger rows_after(const std::vector<pipeline::ReplayedRow>& replayed) {
@@ -105,8 +108,8 @@ void replay(const LedgerCommand& command) {
                  {"judged otherwise", count(pipeline::Replay::kChanged)},
                  {"unmeasured", count(pipeline::Replay::kUnmeasured)},
                  {"refused by the graph of loops, not replayed", count(pipeline::Replay::kGraph)}});
-  fmt::print("\n{}", report::funnel_text(report::funnel(rows_after(replayed))));
-  if (!changed.empty()) fmt::print("\nJudged otherwise:\n{}", lines_of(changed));
+  core::print("\n{}", report::funnel_text(report::funnel(rows_after(replayed))));
+  if (!changed.empty()) core::print("\nJudged otherwise:\n{}", lines_of(changed));
 }
 
 void change(const LedgerCommand& command, pipeline::Word word) {
@@ -120,11 +123,11 @@ void change(const LedgerCommand& command, pipeline::Word word) {
           "what the run has seen");
   const auto changed =
       pipeline::change_run(command.folder, command.candidate, word, command.assignments);
-  fmt::print("{}", lines_of(changed.rows));
+  core::print("{}", lines_of(changed.rows));
   print_figures(
       {{"loops", fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
        {"farthest that a keyframe moved", fmt::format("{:.3f} m", changed.farthest_m)}});
-  fmt::print(
+  core::print(
       "Written anew: map.sw, loops.json, trajectory.tum, odometry.tum, frames.csv, map.ply.\n"
       "As it was: report.html, and what `samewhere dense` made.\n");
 }

@@ -35,14 +35,20 @@ void add_geometry(const std::optional<core::GeometryEvidence>& geometry,
   const auto value = [&](auto core::GeometryEvidence::*field) {
     return geometry ? std::optional<double>((*geometry).*field) : std::nullopt;
   };
+  // measured only where a geometry was found
+  const auto found = [&](auto core::GeometryEvidence::*field) {
+    return geometry && geometry->num_inliers > 0 ? value(field) : std::nullopt;
+  };
   using Geometry = core::GeometryEvidence;
   figures.add("matches", value(&Geometry::num_matches), "", at_least(config.min_matches));
+  if (geometry && geometry->num_guided_matches > 0)
+    figures.add("matches around the pose", value(&Geometry::num_guided_matches));
   figures.add("inliers", value(&Geometry::num_inliers), "", at_least(config.min_inliers));
-  figures.add("inliers of matches", value(&Geometry::inlier_ratio));
-  figures.add("share of the picture", value(&Geometry::spread_ratio), "",
+  figures.add("inliers of matches", found(&Geometry::inlier_ratio));
+  figures.add("share of the picture", found(&Geometry::spread_ratio), "",
               at_least(config.min_spread_ratio));
-  figures.add("share seen by both", value(&Geometry::overlap_ratio));
-  figures.add("reprojection error", value(&Geometry::reprojection_rmse_px), " px");
+  figures.add("share seen by both", found(&Geometry::overlap_ratio));
+  figures.add("reprojection error", found(&Geometry::reprojection_rmse_px), " px");
   const auto apart_m = geometry ? geometry->disagreement_m : std::nullopt;
   if (apart_m && std::isinf(*apart_m)) {
     figures.add("poses of both views apart", "one of them finds none");

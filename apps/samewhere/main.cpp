@@ -1,6 +1,10 @@
+#include <sstream>
+#include <string>
+
 #include "commands.hpp"
 #include "options.hpp"
 #include <samewhere/core/program.hpp>
+#include <samewhere/core/terminal.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -29,8 +33,12 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // help and version are no errors
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) {  // help and version are no errors
+      std::ostringstream text;
+      const int exit_code_of_help = app.exit(error, text, text);
+      core::print_text(text.str());
+      return exit_code_of_help;
+    }
     return core::complain("samewhere",
                           unknown_command(app).value_or(error.what()) + " (see samewhere --help)",
                           core::kBadInput);

@@ -35,11 +35,16 @@ void add_optimize_command(CLI::App& app) {
                                            {command->out, command->loops, command->svg}));
   });
   sub->footer(
-      "Edges from a number to the next one are odometry and are believed; every other is a loop, "
-      "which is "
-      "refused if it does not fit.\n"
+      "The first edge from a number to the next one that the file has is odometry and is believed; "
+      "every other is a loop, which is refused if it does not fit. Landmarks are left out and "
+      "counted. Without VERTEX lines the poses are laid out along the edges.\n"
+      "Solved from the poses of the file, from odometry and from a chordal relaxation, until one "
+      "explains the measurements; 'converged no' means that the iterations ran out.\n"
+      "cost is half of the squared errors with the angle of a rotation as its error, chi2 is g2o's "
+      "sum, which takes twice the sine of half the angle; the same in the plane.\n"
       "Examples:\n"
       "  samewhere optimize graph.g2o --out solved.g2o --svg graph.svg\n"
+      "  samewhere optimize graph.g2o --set optimize.loop_loss=least_squares\n"
       "  samewhere map runs/demo/map.sw export --g2o graph.g2o\n"
       "  samewhere optimize graph.g2o --set optimize.loop_loss=huber --loops loops.csv");
 }

@@ -21,8 +21,8 @@ void add_config_options(CLI::App& command, ConfigOptions& options);
 pipeline::Config load(const ConfigOptions& options);
 
 // For CLI::Option::transform: a run's folder or the map in it, as the folder or as the map.
-std::string as_run_folder(std::string path);
-std::string as_map_file(std::string path);
+std::string as_run_folder(const std::string& path);
+std::string as_map_file(const std::string& path);
 
 // From now on an empty value, which is what an unset variable of a shell leaves, is an error of
 // every option and positional argument of the command and those below it.

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <samewhere/core/printable.hpp>
+#include <samewhere/core/terminal.hpp>
 
 namespace samewhere::app {
 
 void print_figures(const std::vector<report::Figure>& figures) {
   std::size_t width = 0;
   for (const auto& figure : figures) width = std::max(width, figure.name.size());
-  for (const auto& figure : figures) fmt::print("  {:<{}}  {}\n", figure.name, width, figure.value);
+  for (const auto& figure : figures) {
+    core::print("  {:<{}}  {}\n", figure.name, width,
+                core::printable_line(figure.value, core::kMaxMessage));
+  }
 }
 
 }  // namespace samewhere::app

@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "commands.hpp"
 #include "options.hpp"
@@ -16,10 +18,13 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
+#include <samewhere/core/terminal.hpp>
+#include <samewhere/input/camera_file.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run.hpp>
+#include <samewhere/pipeline/self_calibration.hpp>
 #include <samewhere/report/funnel.hpp>
-#include <samewhere/report/old_results.hpp>
+#include <samewhere/report/results_folder.hpp>
 #include <samewhere/report/write.hpp>
 
 namespace samewhere::app {
@@ -33,7 +38,9 @@ struct RunCommand {
   std::string map;        // run only: start in this map
   bool localize = false;  // and leave it as it is
   std::string camera;
+  double fov_deg = 0.0;  // run only
   bool is_realtime = false;
+  bool is_forced = false;  // may replace the results of an earlier run
   ConfigOptions config;
 };
 
@@ -52,22 +59,20 @@ std::string short_name(const std::string& source) {
   return name;
 }
 
-// runs/NAME, or runs/NAME-2 and so on: never one that is there.
-std::filesystem::path unused_folder(const std::string& source) {
-  const std::filesystem::path first = std::filesystem::path("runs") / short_name(source);
-  std::filesystem::path folder = first;
-  for (int number = 2; std::filesystem::exists(folder); ++number) {
-    folder = first.string() + "-" + std::to_string(number);
-  }
-  return folder;
+report::ResultsPlace place_for_results(const RunCommand& command, const std::string& source) {
+  return {.folder = command.out,
+          .name = std::filesystem::path("runs") / short_name(command.source),
+          .replaces_earlier = command.is_forced,
+          .source = source,
+          .known_map = command.map};
 }
 
-void write(const pipeline::RunOutcome& outcome, Work work, const std::filesystem::path& folder) {
-  if (work == Work::kSlam) {
-    report::write_run(outcome.record, folder);
-  } else {
-    report::write_recognition(outcome.record, outcome.matches, outcome.accepted, folder);
-  }
+// What could not be written and why, a line for each.
+std::vector<std::string> write(const pipeline::RunOutcome& outcome, Work work,
+                               const std::filesystem::path& folder) {
+  return work == Work::kSlam
+             ? report::write_run(outcome.record, folder)
+             : report::write_recognition(outcome.record, outcome.matches, outcome.accepted, folder);
 }
 
 // How fast frames come and are done, where reading is part of it: the wait for a frame, which is
@@ -79,7 +84,7 @@ void print_times_with_reading(const core::Timings& timings, double processor_ms)
   both.resize(work.size());  // the last wait brings no frame
   std::transform(work.begin(), work.end(), both.begin(), both.begin(), std::plus<>());
   const core::TimingSummary summary = core::summarize(both);
-  fmt::print(
+  core::print(
       "  with reading {:.1f} frames per second ({:.1f} ms median, {:.1f} ms p95; {:.1f} ms of "
       "processor time)\n",
       1000.0 * summary.count / summary.total_ms, summary.median_ms, summary.p95_ms,
@@ -88,12 +93,12 @@ void print_times_with_reading(const core::Timings& timings, double processor_ms)
 
 void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::path& folder) {
   const report::RunRecord& record = outcome.record;
-  fmt::print("{}\n", record.title);
+  core::print("{}\n", record.title);
   print_figures(record.figures);
   const auto& times = record.timings.durations_ms();
   if (const auto whole = times.find(report::kWholeFrameStage); whole != times.end()) {
     const core::TimingSummary summary = core::summarize(whole->second);
-    fmt::print(
+    core::print(
         "  {:.1f} frames per second without reading ({:.1f} ms median, {:.1f} ms p95; {:.1f} ms of "
         "processor time), {:.0f} MiB at most\n",
         1000.0 * summary.count / summary.total_ms, summary.median_ms, summary.p95_ms,
@@ -102,16 +107,11 @@ void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::p
     if (record.processor_ms) print_times_with_reading(record.timings, *record.processor_ms);
   }
   if (record.first_pose_s)
-    fmt::print("  first pose {:.2f} s after the start\n", *record.first_pose_s);
-  fmt::print("\n");
-  fmt::print("{}\n", report::funnel_text(report::funnel(record.ledger)));
-  fmt::print("{}\n", (folder / "report.html").string());
-}
-
-pipeline::MapPlan map_plan(const RunCommand& command, const std::filesystem::path& folder,
-                           std::function<void()> begin) {
-  if (command.map.empty()) return {.save = folder / "map.sw", .begin = std::move(begin)};
-  return {.known = command.map, .is_known_fixed = command.localize, .begin = std::move(begin)};
+    core::print("  first pose {:.2f} s after the start\n", *record.first_pose_s);
+  core::print("\n");
+  core::print("{}\n", report::funnel_text(report::funnel(record.ledger)));
+  const std::filesystem::path page = folder / "report.html";
+  core::print("{}\n", (core::is_there(page) ? page : folder).string());
 }
 
 // Who runs a camera knows that frames may be lost; of pictures and rendered worlds none may, for
@@ -130,37 +130,96 @@ void require_realtime_as_told(const std::string& source, const core::SourceInfo&
   }
 }
 
-int execute(const RunCommand& command, Work work) {
-  core::catch_interrupts();
+// Where the camera was estimated, the run's folder says what it was: for later runs, and for
+// commands that open the recording again.
+pipeline::Config with_estimated_camera(pipeline::Config config,
+                                       const std::optional<pipeline::SelfCalibration>& calibration,
+                                       const std::filesystem::path& folder) {
+  if (calibration) config.input.camera = std::filesystem::absolute(folder / "camera.txt").string();
+  return config;
+}
+
+pipeline::Config config_of(const RunCommand& command, Work work) {
   pipeline::Config config = load(command.config);
   config.source = pipeline::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
+  config.input.needs_calibration = work == Work::kSlam;
   if (!command.camera.empty()) config.input.camera = command.camera;
+  if (command.fov_deg > 0.0) config.input.fov_deg = command.fov_deg;
   if (!config.input.camera.empty())
     config.input.camera = pipeline::absolute_source(config.input.camera);
-  const std::filesystem::path folder =
-      command.out.empty() ? unused_folder(command.source) : std::filesystem::path(command.out);
+  return config;
+}
+
+// At the first good frame. Before, Ctrl-C ends the process at once: there is nothing to finish.
+// Settings that find no room are no reason to see nothing: the results are tried, too.
+std::filesystem::path begin_results(report::ResultsFolder& results, const pipeline::Config& config,
+                                    const std::optional<pipeline::SelfCalibration>& calibration) {
+  core::catch_interrupts();
+  results.begin();
+  try {
+    if (calibration)
+      core::replace_file(results.path() / "camera.txt",
+                         input::camera_file_text(calibration->camera));
+    const pipeline::Config kept = with_estimated_camera(config, calibration, results.path());
+    core::replace_file(results.path() / "config.yaml", core::config_as_yaml(kept));
+  } catch (const core::InputError& error) {
+    spdlog::warn("{}; the run goes on", error.what());
+  }
+  return results.path() / "map.sw";
+}
+
+pipeline::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunCommand& command,
+                             const pipeline::Config& config, Work work,
+                             const std::function<std::filesystem::path()>& begin) {
+  if (work == Work::kRecognition)
+    return pipeline::run_recognition(std::move(source), config, [&] { begin(); });
+  return pipeline::run_slam(
+      std::move(source), config,
+      {.known = command.map, .is_known_fixed = command.localize, .begin = begin});
+}
+
+// Each on a line of stderr. Returns the exit code.
+int report_errors(const std::vector<std::string>& errors, bool is_interrupted) {
+  for (const std::string& error : errors) core::complain("samewhere", error, core::kBadInput);
+  if (!errors.empty()) return core::kBadInput;
+  return is_interrupted ? core::kInterruptedExit : core::kDone;
+}
+
+int execute(const RunCommand& command, Work work) {
+  const pipeline::Config config = config_of(command, work);
+  report::ResultsFolder results(place_for_results(command, config.source));
   auto source = pipeline::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
-  if (work == Work::kSlam) pipeline::require_slam_input(source->info(), config);
-  report::require_folder_for_results(folder, config.source);
-  // when source and map are known to be good: a bad one leaves no folder behind, nor does it cost
-  // what an earlier run left there
-  const auto begin = [&] {
-    core::make_writable_folder(folder);
-    report::remove_old_results(folder, command.map);
-    core::write_file(folder / "config.yaml", core::config_as_yaml(config));
-  };
-  if (work == Work::kRecognition) begin();
-  const pipeline::RunOutcome outcome =
-      work == Work::kSlam
-          ? pipeline::run_slam(std::move(source), config, map_plan(command, folder, begin))
-          : pipeline::run_recognition(std::move(source), config);
-  write(outcome, work, folder);
-  print_outcome(outcome, folder);
-  for (const auto& error : {outcome.record.input_error, outcome.map_error})
-    if (error) throw core::InputError(*error);
-  return outcome.record.is_interrupted ? core::kInterruptedExit : core::kDone;
+  std::optional<pipeline::SelfCalibration> calibration;
+  if (work == Work::kSlam) {
+    calibration = pipeline::calibrate_if_unknown(source, config);
+    pipeline::require_slam_input(source->info(), config);
+  }
+  pipeline::RunOutcome outcome = work_on(std::move(source), command, config, work, [&] {
+    return begin_results(results, config, calibration);
+  });
+  report::RunRecord& record = outcome.record;
+  if (calibration) record.figures.push_back(pipeline::focal_length_figure(*calibration));
+  std::vector<std::string> errors;
+  if (results.has_begun()) {
+    record.config_yaml =
+        core::config_as_yaml(with_estimated_camera(config, calibration, results.path()));
+    errors = write(outcome, work, results.path());
+    print_outcome(outcome, results.path());
+  } else if (!record.input_error && !record.is_interrupted) {
+    throw core::InputError(command.source + ": gives no frame");
+  }
+  for (const auto& error : {record.input_error, outcome.map_error})
+    if (error) errors.push_back(*error);
+  return report_errors(errors, record.is_interrupted);
+}
+
+void add_fov_option(CLI::App& sub, RunCommand& command) {
+  sub.add_option("--fov", command.fov_deg,
+                 "horizontal field of view in degrees, of one camera without calibration; without "
+                 "it guessed and then estimated")
+      ->check(CLI::Range(5.0, 170.0));
 }
 
 void add_map_options(CLI::App& sub, RunCommand& command) {
@@ -182,10 +241,13 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       ->required();
   sub->add_option("--out", command->out,
                   "folder for the results; without it runs/NAME, never overwriting");
+  sub->add_flag("--force", command->is_forced,
+                "--out may hold the results of an earlier run, which the new ones replace from the "
+                "first good frame on");
   sub->add_option(
       "--camera", command->camera,
-      "camera file, as `samewhere calibrate` writes it: 3 rows of the camera matrix, then, "
-      "where known, k1 k2 p1 p2 k3 and width height; without it the source's own");
+      "camera file: as `samewhere calibrate` writes it, OpenCV, ORB-SLAM, ROS, Kalibr, COLMAP or "
+      "JSON; without it the source's own");
   sub->add_flag("--realtime", command->is_realtime,
                 "a camera, or a video played at its own pace: always the newest frame; says how "
                 "many were dropped; two such runs need not agree");
@@ -195,6 +257,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       [command] { command->config.assignments.push_back("verify.measure_all=true"); },
       "measure candidates, too, that verify.min_similarity or verify.pause_frames refuse, so that "
       "`ledger RUN replay` knows all");
+  if (work == Work::kSlam) add_fov_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;

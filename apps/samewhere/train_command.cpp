@@ -13,6 +13,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/pipeline/word_training.hpp>
 
 namespace samewhere::app {
@@ -56,8 +57,8 @@ void train_words(const WordsCommand& command) {
   for (const std::string& assignment : command.config.assignments)
     training.command += " --set " + assignment;
   const pipeline::TrainedWords trained = pipeline::train_words(training, load(command.config));
-  fmt::print("{} words of {} features in {} pictures: {}\n", trained.num_words,
-             trained.num_features, trained.num_pictures, command.out);
+  core::print("{} words of {} features in {} pictures: {}\n", trained.num_words,
+              trained.num_features, trained.num_pictures, command.out);
 }
 
 void add_words_command(CLI::App& train) {

@@ -11,6 +11,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/twin/contact_sheet.hpp>
@@ -34,7 +35,7 @@ void print_presets() {
   std::size_t width = 0;
   for (const auto& preset : twin::list_presets()) width = std::max(width, preset.name.size());
   for (const auto& preset : twin::list_presets()) {
-    fmt::print("twin:{:<{}}  {}\n", preset.name, width, preset.what);
+    core::print("twin:{:<{}}  {}\n", preset.name, width, preset.what);
   }
 }
 
@@ -59,7 +60,7 @@ void check_sheet(const std::string& file) {
 
 void write_sheet(const std::string& file, const cv::Mat& sheet) {
   core::write_file(file, report::jpeg_bytes(sheet, sheet.cols));
-  fmt::print("{}\n", file);
+  core::print("{}\n", file);
 }
 
 void write_sheets(const TwinCommand& command, const twin::Walkthrough& walk,
@@ -104,9 +105,9 @@ void write_walk(const TwinCommand& command, const pipeline::Config& config) {
       return twin::SideTables{twin::watched_truth(*walk), walk->wheels()};
     };
     write_folder(command, *source, tables);
-    fmt::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
-               walk->num_frames(), command.source, walk->truth().loops.size(),
-               walk->truth().impostors.size());
+    core::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
+                walk->num_frames(), command.source, walk->truth().loops.size(),
+                walk->truth().impostors.size());
   }
   write_sheets(command, *walk, config.twin);
 }
@@ -125,7 +126,7 @@ void write(const TwinCommand& command) {
   }
   const auto source = pipeline::open_source(config);
   write_folder(command, *source, nullptr);
-  fmt::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);
+  core::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);
 }
 
 // The list alone is printed: what stands beside it would be passed over.

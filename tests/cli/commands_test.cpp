@@ -53,7 +53,7 @@ TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
   // of frames 3, 4 and 5: all older ones that the window allows
   EXPECT_EQ(row_of(found.out, "candidates judged"), "6");
   EXPECT_EQ(run("train words " + walk + " --out " + quoted(path("words.json"))).exit_code, 2);
-  const Outcome missing = run(loops + "no.bin");
+  const Outcome missing = run(loops + "no.bin --force");
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.err.find("retrieve.vocabulary = no.bin: there is no such file"),
             std::string::npos);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "program.hpp"
@@ -56,6 +57,26 @@ class InputCommands : public testing::Test {
 
   input::TestFolder folder_;
 };
+
+TEST_F(InputCommands, CalibrateTakesSharpFramesOfAVideoThatLieApart) {
+  cv::VideoWriter writer(path("board.avi").string(), cv::CAP_OPENCV_MJPEG,
+                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 4.0, {320, 240});
+  for (const Eigen::Vector3d& turn_rad :
+       {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(0.4, 0.0, 0.0),
+        Eigen::Vector3d(-0.4, 0.1, 0.0), Eigen::Vector3d(0.0, 0.4, 0.1),
+        Eigen::Vector3d(0.1, -0.45, 0.0), Eigen::Vector3d(0.3, 0.3, 0.3)}) {
+    cv::Mat image;
+    cv::cvtColor(rendered_board(turn_rad, {0.0, 0.0, 0.24}), image, cv::COLOR_GRAY2BGR);
+    for (int i = 0; i < 4; ++i) writer.write(image);  // a second, two stretches
+  }
+  writer.release();
+  const Outcome outcome = run("calibrate " + quoted(path("board.avi")) +
+                              " --board 5x4 --square 0.03 --out " + quoted(path("video.txt")));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("12 show the board, 6 apart are used"));
+  const core::PinholeRadtan camera = input::read_camera_file(path("video.txt"));
+  EXPECT_NEAR(camera.fx_px, 260.0, 6.0);
+}
 
 TEST_F(InputCommands, CalibrateWritesTheCameraThatRunReads) {
   const std::string rest = " --board 5x4 --square 0.03 --out " + quoted(path("camera.txt"));

@@ -52,7 +52,7 @@ TEST_F(KnownMap, WhatItRecognisedIsToldAndShown) {
 
 TEST_F(KnownMap, AMapThatCannotBeUsedCostsNoEarlierResults) {
   const std::string trajectory = core::read_file(path("a/trajectory.tum"));
-  const std::string again = fmt::format("run {} --out {} --map", kWalk, in("a"));
+  const std::string again = fmt::format("run {} --out {} --force --map", kWalk, in("a"));
   expect_refused(fmt::format("{} {}", again, in("nowhere.sw")), "nowhere.sw: no such file");
   expect_refused(fmt::format("{} {} --set features.num_features=800", again, in("a/map.sw")),
                  "a/map.sw: the map was made with features.num_features = 1000");
@@ -85,7 +85,7 @@ TEST_F(KnownMap, DoesNotGrowByARunWithoutItsDepth) {
 
 TEST_F(KnownMap, AMapThatSomebodyWritesToIsNotRemoved) {
   const scene::WriterLock lock(path("a/map.sw"), scene::WriterLock::File::kIsThere);
-  expect_refused(fmt::format("run {} --out {}", kWalk, in("a")),
+  expect_refused(fmt::format("run {} --out {} --force", kWalk, in("a")),
                  "a/map.sw: another program is writing to this map");
   EXPECT_TRUE(std::filesystem::exists(path("a/trajectory.tum")));
 }

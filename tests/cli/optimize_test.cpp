@@ -47,6 +47,8 @@ TEST_F(Optimize, RefusesTheLieAndSaysSo) {
   EXPECT_THAT(done.out, HasSubstr("11: 7 from a pose to the next, 4 loops"));
   EXPECT_THAT(done.out, HasSubstr("1 of unknown type VERTEX_XY"));
   EXPECT_THAT(done.out, HasSubstr("3 / 1"));
+  EXPECT_THAT(done.out, HasSubstr("as g2o computes it"));
+  EXPECT_THAT(done.out, testing::ContainsRegex("converged +yes"));
   const std::string loops = core::read_file(path("loops.csv"));
   EXPECT_THAT(loops, HasSubstr("a,b,squared_error,weight\n0,4,"));
   EXPECT_EQ(loops.substr(loops.size() - 3), ",0\n") << "the last one is the lie";

@@ -11,7 +11,8 @@ namespace samewhere::core {
 // code 2.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  // A zero byte in the message, such as one of a damaged list, becomes '?': what() would end there.
+  explicit InputError(const std::string& message);
 };
 
 // A broken promise of our own code: a bug. Exit code 3.

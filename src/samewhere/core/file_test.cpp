@@ -1,13 +1,15 @@
+#include <csignal>
 #include <filesystem>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
-#include <samewhere/core/stage_thread.hpp>
 
 namespace samewhere::core {
 namespace {
@@ -79,38 +81,112 @@ TEST_F(FileTest, ANameThatIsTooLongIsAnInputError) {
               HasSubstr("cannot be read"));
 }
 
-TEST_F(FileTest, AFullDiskIsReportedAndTheOldFileStays) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+TEST_F(FileTest, APipeOrDeviceInPlaceOfAFileIsRefusedAtOnce) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(error_of([&] { read_file(folder_ / "pipe"); }),
+              HasSubstr("pipe: is a pipe, expected a file"));
+  EXPECT_THAT(error_of([] { read_file("/dev/zero"); }),
+              HasSubstr("/dev/zero: is a device, expected a file"));
+  fs::create_symlink("/dev/zero", folder_ / "endless");
+  EXPECT_THAT(error_of([&] { read_file(folder_ / "endless"); }), HasSubstr("is a device"));
+}
+
+TEST_F(FileTest, APipeThatTheProcessWasGivenOpenIsRead) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], "words", 5), 5);
+  close(ends[1]);
+  EXPECT_EQ(read_file("/dev/fd/" + std::to_string(ends[0])), "words");
+  close(ends[0]);
+}
+
+TEST_F(FileTest, AFileLargerThanItsKindIsRefusedBeforeMemoryIsTaken) {
+  write_file(folder_ / "sparse.txt", "");
+  fs::resize_file(folder_ / "sparse.txt", 1'000'000'000'000);
+  EXPECT_THAT(error_of([&] { read_file(folder_ / "sparse.txt"); }),
+              HasSubstr("sparse.txt: is larger than 128 MB, expected a text file"));
+  write_file(folder_ / "long", std::string(2 * kMegabyte, 'x'));
+  EXPECT_THAT(error_of([&] { read_file(folder_ / "long", kSettingsLimit); }),
+              HasSubstr("is larger than 1 MB, expected a file of settings"));
+  // the system tells no size of this one
+  EXPECT_THAT(error_of([&] {
+                read_file("/proc/self/status", {100, "a note"});
+              }),
+              HasSubstr("expected a note"));
+}
+
+TEST_F(FileTest, ALinkThatLeadsNowhereIsNamedWithWhereItLeads) {
+  fs::create_symlink("/mnt/disk/camera.txt", folder_ / "camera.txt");
+  EXPECT_THAT(error_of([&] { read_file(folder_ / "camera.txt"); }),
+              HasSubstr("camera.txt: is a link to /mnt/disk/camera.txt, which is not there"));
+}
+
+TEST_F(FileTest, AnErrorWhileWritingLeavesTheOldFile) {
   write_file(folder_ / "map", "old");
-  // the temporary file that write_file opens leads to a device that is always full
-  fs::create_symlink("/dev/full", folder_ / "map.partial");
-  EXPECT_THAT(error_of([&] { write_file(folder_ / "map", "new"); }),
-              AllOf(HasSubstr("map"), HasSubstr("No space left")));
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string error = error_of([&] { write_file(folder_ / "map", std::string(5000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, ignored);
+  EXPECT_THAT(error, AllOf(HasSubstr("map: cannot be written"), HasSubstr("File too large")));
   EXPECT_EQ(read_file(folder_ / "map"), "old");
   EXPECT_EQ(num_entries(), 1) << "no temporary file is left";
 }
 
-TEST_F(FileTest, OfALinkThatWhichItLeadsToIsWritten) {
-  write_file(folder_ / "kept", "old");
-  fs::create_symlink(folder_ / "kept", folder_ / "link");
-  write_file(folder_ / "link", "new");
-  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
-  EXPECT_EQ(read_file(folder_ / "kept"), "new");
+TEST_F(FileTest, ALinkIsReplacedAndWhatItLeadsToStays) {
+  write_file(folder_ / "mine", "old");
+  for (const auto& write : {&write_file, &replace_file}) {
+    fs::remove(folder_ / "link");
+    fs::create_symlink(folder_ / "mine", folder_ / "link");
+    write(folder_ / "link", "new");
+    EXPECT_FALSE(fs::is_symlink(folder_ / "link"));
+    EXPECT_EQ(read_file(folder_ / "link"), "new");
+    EXPECT_EQ(read_file(folder_ / "mine"), "old");
+  }
   EXPECT_EQ(num_entries(), 2);
-  fs::create_symlink("not-yet", folder_ / "ahead");
-  write_file(folder_ / "ahead", "made");
-  EXPECT_TRUE(fs::is_symlink(folder_ / "ahead"));
-  EXPECT_EQ(read_file(folder_ / "not-yet"), "made");
+}
+
+TEST_F(FileTest, TheTemporaryNameIsOneThatNoFileHas) {
+  write_file(folder_ / "mine", "old");
+  const std::string partial = "graph.partial-" + std::to_string(getpid()) + "-";
+  fs::create_symlink(folder_ / "mine", folder_ / (partial + "0"));
+  fs::create_symlink(folder_ / "mine", folder_ / "graph.partial");
+  write_file(folder_ / "graph", "new");
+  EXPECT_EQ(read_file(folder_ / "mine"), "old");
+  EXPECT_EQ(read_file(folder_ / "graph"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / (partial + "0"))) << "of another program";
+}
+
+TEST_F(FileTest, WhatKilledProgramsLeftOfAFileIsRemoved) {
+  for (const char* name : {"map.partial-17-0", "map.partial-4711-12", "map.partial-mine", "map"})
+    write_file(folder_ / name, "x");
+  remove_partial_files(folder_ / "map");
+  EXPECT_EQ(num_entries(), 2);
+  EXPECT_TRUE(fs::exists(folder_ / "map.partial-mine"));
 }
 
 TEST_F(FileTest, APipeIsWrittenToAndStays) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  std::string read;
-  WorkerThread reader([&] { read = read_file(folder_ / "pipe"); });
+  EXPECT_THAT(error_of([&] { write_file(folder_ / "pipe", "bytes"); }),
+              HasSubstr("pipe: cannot be written: no program reads this pipe"));
+  const int reader = open((folder_ / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
   write_file(folder_ / "pipe", "bytes");
-  reader.join();
-  EXPECT_EQ(read, "bytes");
+  char read_back[8] = {};
+  EXPECT_EQ(::read(reader, read_back, sizeof read_back), 5);
+  EXPECT_STREQ(read_back, "bytes");
+  close(reader);
   EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));
+  replace_file(folder_ / "pipe", "result");
+  EXPECT_EQ(read_file(folder_ / "pipe"), "result") << "of a folder of its own";
+}
+
+TEST_F(FileTest, NoDeviceIsReplaced) {
+  EXPECT_THAT(error_of([] { replace_file("/dev/null", "x"); }), HasSubstr("is a device"));
+  write_file("/dev/null", "x");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
 TEST_F(FileTest, AFolderInTheWayOfAFileIsReported) {
@@ -123,7 +199,21 @@ TEST_F(FileTest, AFolderInTheWayOfAFileIsReported) {
 TEST_F(FileTest, FoldersAreMadeAllTheWayAndLeftEmpty) {
   make_writable_folder(folder_ / "a" / "b");
   EXPECT_TRUE(fs::is_empty(folder_ / "a" / "b"));
+  write_file(folder_ / "mine", "old");
+  fs::create_symlink(folder_ / "mine", folder_ / "a" / "b" / ".writable");
   EXPECT_NO_THROW(make_writable_folder(folder_ / "a" / "b")) << "there already";
+  EXPECT_TRUE(fs::is_symlink(folder_ / "a" / "b" / ".writable")) << "that of a user";
+  EXPECT_EQ(read_file(folder_ / "mine"), "old");
+}
+
+TEST_F(FileTest, ANewFolderIsMadeOnce) {
+  EXPECT_TRUE(make_new_folder(folder_ / "runs" / "walk"));
+  EXPECT_FALSE(make_new_folder(folder_ / "runs" / "walk"));
+  fs::create_symlink("nowhere", folder_ / "runs" / "link");
+  EXPECT_FALSE(make_new_folder(folder_ / "runs" / "link"));
+  write_file(folder_ / "file", "");
+  EXPECT_THAT(error_of([&] { make_new_folder(folder_ / "file" / "walk"); }),
+              HasSubstr("cannot be made"));
 }
 
 TEST_F(FileTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {

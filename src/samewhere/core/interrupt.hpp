@@ -4,9 +4,10 @@
 
 namespace samewhere::core {
 
-// After this, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag: long loops look at it between
-// frames, stop, and their files are finished. A second one ends the process at once. One that was
-// caught before is forgotten.
+// After this, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP (its terminal is closed; not under
+// `nohup`) only sets a flag: long loops look at it between frames, stop, and their files are
+// finished. A second SIGINT or SIGTERM ends the process at once. One that was caught before is
+// forgotten.
 void catch_interrupts();
 bool is_interrupted();
 

@@ -13,7 +13,7 @@ constexpr double kMaxSideways_ratio = 1e-3;  // a tenth of a pixel at a disparit
 
 bool has_distortion(const PinholeRadtan& camera) {
   return camera.k1 != 0.0 || camera.k2 != 0.0 || camera.p1 != 0.0 || camera.p2 != 0.0 ||
-         camera.k3 != 0.0;
+         camera.k3 != 0.0 || camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0;
 }
 
 bool is_near(double a_px, double b_px) { return std::abs(a_px - b_px) < kMaxDifference_px; }
@@ -27,8 +27,11 @@ bool has_same_intrinsics(const PinholeRadtan& a, const PinholeRadtan& b) {
 
 Result<double, std::string> rectified_baseline_m(const Rig& rig) {
   if (rig.cameras.size() < 2) return refuse(std::string("there is no second camera"));
-  const auto& left = std::get<PinholeRadtan>(rig.cameras[0]);
-  const auto& right = std::get<PinholeRadtan>(rig.cameras[1]);
+  const auto* first = std::get_if<PinholeRadtan>(&rig.cameras[0]);
+  const auto* second = std::get_if<PinholeRadtan>(&rig.cameras[1]);
+  if (first == nullptr || second == nullptr) return refuse(std::string("a lens is a fisheye"));
+  const PinholeRadtan& left = *first;
+  const PinholeRadtan& right = *second;
   if (has_distortion(left) || has_distortion(right)) {
     return refuse(std::string("the lenses distort"));
   }
@@ -45,6 +48,11 @@ Result<double, std::string> rectified_baseline_m(const Rig& rig) {
         "the right camera is turned by {:.5f} rad and lies at ({:.4f}, {:.4f}, {:.4f}) m, not to "
         "the right alone",
         turn_rad, baseline_m.x(), baseline_m.y(), baseline_m.z()));
+  }
+  constexpr double kMaxBaseline_m = 100.0;  // two cameras of one body
+  if (baseline_m.x() > kMaxBaseline_m) {
+    return refuse(fmt::format("the cameras are {:.4g} m apart, expected at most {} m",
+                              baseline_m.x(), kMaxBaseline_m));
   }
   return baseline_m.x();
 }

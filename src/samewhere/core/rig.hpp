@@ -8,9 +8,9 @@
 
 namespace samewhere::core {
 
-// Pinhole camera with the radial-tangential distortion of Brown (OpenCV's order k1 k2 p1 p2 k3).
-// Lengths in pixels; the centre of the upper left pixel is (0, 0). The functions on it are in
-// geometry/camera.hpp.
+// Pinhole camera with the radial-tangential distortion of Brown (OpenCV's order k1 k2 p1 p2 k3) and
+// the denominator of OpenCV's rational model (k4 k5 k6; 0: there is none). Lengths in pixels; the
+// centre of the upper left pixel is (0, 0). The functions on it are in geometry/camera.hpp.
 struct PinholeRadtan {
   int width_px = 0;
   int height_px = 0;
@@ -23,10 +23,30 @@ struct PinholeRadtan {
   double p1 = 0.0;
   double p2 = 0.0;
   double k3 = 0.0;
+  double k4 = 0.0;
+  double k5 = 0.0;
+  double k6 = 0.0;
 };
 
-// One alternative today; a fisheye model joins here.
-using Camera = std::variant<PinholeRadtan>;
+// Fisheye camera of Kannala and Brandt 2006 as OpenCV, Kalibr (equidistant) and ORB-SLAM3 have it:
+// a ray at the angle t from the optical axis appears f t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8)
+// from the centre. Lengths in pixels, centre of the upper left pixel (0, 0).
+struct KannalaBrandt {
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0.0;
+  double fy_px = 0.0;
+  double cx_px = 0.0;
+  double cy_px = 0.0;
+  double k1 = 0.0;
+  double k2 = 0.0;
+  double k3 = 0.0;
+  double k4 = 0.0;
+};
+
+// Behind input/rectify.hpp every camera is a PinholeRadtan without k4 k5 k6: pictures of the other
+// models have been turned into those of an ideal pinhole.
+using Camera = std::variant<PinholeRadtan, KannalaBrandt>;
 
 // Where an inertial unit sits and how it errs: densities of its white noise and of the random walk
 // of its biases; 0: not known.

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,8 +20,58 @@ std::string printable(const std::string& word) {
   return word.size() > kMaxLength ? text + "..." : text;
 }
 
+namespace {
+
+// By the byte order mark, or by the zero beside the first letter where there is none.
+void refuse_wide_text(const std::filesystem::path& path, std::string_view bytes) {
+  using namespace std::string_view_literals;
+  const bool has_mark = bytes.starts_with("\xff\xfe"sv) || bytes.starts_with("\xfe\xff"sv) ||
+                        bytes.starts_with("\0\0\xfe\xff"sv);
+  const auto is_ascii = [](char c) { return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r'); };
+  const bool is_bare =
+      bytes.size() >= 4 && bytes.size() % 2 == 0 &&
+      ((is_ascii(bytes[0]) && bytes[1] == 0 && is_ascii(bytes[2]) && bytes[3] == 0) ||
+       (bytes[0] == 0 && is_ascii(bytes[1]) && bytes[2] == 0 && is_ascii(bytes[3])));
+  if (!has_mark && !is_bare) return;
+  throw InputError(path.string() + ": is text in UTF-16 or UTF-32, expected UTF-8 or ASCII");
+}
+
+// CR LF and CR alone to LF.
+std::string with_line_feeds(std::string text) {
+  if (std::count(text.begin(), text.end(), '\r') == 0) return text;
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\r') {
+      out += text[i];
+    } else if (i + 1 == text.size() || text[i + 1] != '\n') {
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '"'; }
+
+// nan and inf are numbers too.
+bool begins_as_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double number = 0.0;
+  return std::from_chars(word.data(), word.data() + word.size(), number).ec == std::errc{};
+}
+
+}  // namespace
+
+std::string read_text(const std::filesystem::path& path) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  std::string bytes = read_file(path);
+  refuse_wide_text(path, bytes);
+  if (bytes.starts_with(kByteOrderMark)) bytes.erase(0, kByteOrderMark.size());
+  return with_line_feeds(std::move(bytes));
+}
+
 std::vector<TextLine> read_text_lines(const std::filesystem::path& path) {
-  std::istringstream text(read_file(path));
+  std::istringstream text(read_text(path));
   std::vector<TextLine> lines;
   int line_number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -28,17 +80,43 @@ std::vector<TextLine> read_text_lines(const std::filesystem::path& path) {
     std::vector<std::string> words;
     for (std::string word; in >> word;) words.push_back(word);
     if (words.empty() || words.front().starts_with('#')) continue;
-    lines.push_back({fmt::format("{}, line {}", path.string(), line_number), std::move(words)});
+    lines.push_back({fmt::format("{}, line {}", path.string(), line_number), std::move(words),
+                     std::string(trimmed(line))});
   }
   return lines;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kWhiteSpace = " \t\r\n\v\f";
+  const std::size_t first = text.find_first_not_of(kWhiteSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kWhiteSpace) - first + 1);
+}
+
+std::vector<std::string> words_between_commas(std::string_view text) {
+  std::string spaced(text);
+  std::replace(spaced.begin(), spaced.end(), ',', ' ');
+  std::istringstream in(spaced);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+void drop_column_names(std::vector<TextLine>& lines) {
+  if (lines.empty() || lines.front().words.empty()) return;
+  const std::string& first = lines.front().words.front();
+  if (!first.empty() && is_letter(first.front()) && !begins_as_number(first))
+    lines.erase(lines.begin());
 }
 
 double finite_number(const TextLine& line, std::size_t column) {
   require(column < line.words.size(), "the column of a text line exists");
   const std::string& word = line.words[column];
+  std::string_view digits = word;
+  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   double number = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number)) {
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(number)) {
     throw InputError(
         fmt::format("{}: found '{}', expected a finite number", line.place, printable(word)));
   }

@@ -11,16 +11,32 @@ namespace samewhere::core {
 struct TextLine {
   std::string place;  // "poses.txt, line 12": how a message calls it
   std::vector<std::string> words;
+  std::string text = {};  // the line as it stands, without white space at its ends
 };
 
-// All lines but the blank ones and those that begin with '#'. Throws InputError if the file cannot
-// be read.
+// The text of a file: without the byte order mark that editors on Windows put before UTF-8, every
+// line ended by a line feed alone, whether the file ends lines by CR LF, LF or CR. Throws
+// InputError if the file cannot be read or is UTF-16 or UTF-32.
+std::string read_text(const std::filesystem::path& path);
+
+// All lines but the blank ones and those that begin with '#'. Throws InputError as read_text.
 std::vector<TextLine> read_text_lines(const std::filesystem::path& path);
+
+// The text without white space at its ends.
+std::string_view trimmed(std::string_view text);
+
+// The text cut into words at white space and commas, as in "1.5, 2.5, 3".
+std::vector<std::string> words_between_commas(std::string_view text);
+
+// Leaves out a first line that names columns, as tables have: one whose first word begins with a
+// letter and is no number (nan and inf are).
+void drop_column_names(std::vector<TextLine>& lines);
 
 // A word fit for a message: a binary file read by mistake has words of any length and any bytes.
 std::string printable(const std::string& word);
 
-// The word as a finite number. Throws InputError naming the line and the word found.
+// The word as a finite number, which a plus may lead. Throws InputError naming the line and the
+// word found.
 double finite_number(const TextLine& line, std::size_t column);
 
 // All words of the line as finite numbers, exactly `count` of them. `meaning` says what they stand

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/text_file.hpp>
 #include <samewhere/core/tum_file.hpp>
 
 namespace samewhere::core {
-namespace {
 
-StampedPose parse_pose(const TextLine& line) {
-  const std::vector<double> n = finite_numbers(line, 8, "stamp tx ty tz qx qy qz qw");
+StampedPose tum_pose(const TextLine& line) {
+  const TextLine values{line.place, words_between_commas(line.text)};
+  const std::vector<double> n = finite_numbers(values, 8, "stamp tx ty tz qx qy qz qw");
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
   constexpr double kMinNorm = 1e-6;
   if (!(rotation.norm() >= kMinNorm && rotation.norm() <= 1.0 / kMinNorm)) {
@@ -20,12 +19,10 @@ StampedPose parse_pose(const TextLine& line) {
   return {n[0], {rotation.normalized(), {n[1], n[2], n[3]}}};
 }
 
-}  // namespace
-
 Trajectory read_tum(const std::filesystem::path& path) {
   Trajectory trajectory;
   for (const TextLine& line : read_text_lines(path)) {
-    const StampedPose pose = parse_pose(line);
+    const StampedPose pose = tum_pose(line);
     if (!trajectory.empty() && pose.stamp_s <= trajectory.back().stamp_s) {
       throw InputError(fmt::format("{}: found stamp {:.6f} after {:.6f}, expected stamps that rise",
                                    line.place, pose.stamp_s, trajectory.back().stamp_s));

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include <samewhere/core/text_file.hpp>
 #include <samewhere/core/truth.hpp>
 
 namespace samewhere::core {
@@ -12,6 +13,10 @@ namespace samewhere::core {
 // comments. Throws InputError naming file and line if a line is short, a value is no finite number,
 // a quaternion is zero, or stamps do not rise.
 Trajectory read_tum(const std::filesystem::path& path);
+
+// A pose from a line of that format, its values between blanks or commas. Throws InputError as
+// above.
+StampedPose tum_pose(const TextLine& line);
 
 // The same format, fixed: six decimals for the stamp, nine for the pose.
 std::string tum_text(const Trajectory& trajectory);

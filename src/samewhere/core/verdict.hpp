@@ -28,8 +28,12 @@ struct Candidate {
 // What geometry says about a candidate.
 struct GeometryEvidence {
   int num_matches = 0;  // feature matches offered to RANSAC
-  int num_inliers = 0;  // of these, consistent with one relative pose (or one fundamental matrix)
-  double inlier_ratio = 0.0;          // num_inliers / num_matches
+  // With a pose: matches that were searched again where it projects the points, often more. 0: were
+  // not.
+  int num_guided_matches = 0;
+  // Of the matches of the last stage, consistent with one relative pose (or fundamental matrix).
+  int num_inliers = 0;
+  double inlier_ratio = 0.0;          // inliers among num_matches, over num_matches
   double spread_ratio = 0.0;          // share of the query image's 8 x 8 cells that hold an inlier
   double overlap_ratio = 0.0;         // of either picture about so much lies in the other
   double reprojection_rmse_px = 0.0;  // of the inliers

@@ -44,8 +44,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "histograms of oriented gradients, or the code of a trained network",
          .choices = {"hog", "autoencoder"}});
   visit("network", config.network,
-        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN; relative to the working directory, then "
-                 "to models/"});
+        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN; a name alone: of models/, or else of the "
+                 "working directory"});
   visit("width_px", config.width_px,
         {.help = "columns of the image after preprocessing", .min = 1, .max = 4096});
   visit("height_px", config.height_px,

@@ -1,6 +1,8 @@
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -194,6 +196,32 @@ TEST(MatchProjected, NothingBeyondTheRadius) {
   const auto matches =
       match_projected({{0, far, 0}}, view.features->descriptors.row(0), view, 5.0, {});
   for (const auto& match : matches) EXPECT_NE(match.second, 0);
+}
+
+// As a forged map may have them: 65536 x 65536 cells are 0 in an int.
+TEST(PixelGrid, StaysInsideItsMemoryWhateverTheSizeAndThePixels) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Features features;
+  for (const float at : {kNaN, kInfinity, -kInfinity, 1e30F, -5.0F, 320.0F})
+    features.undistorted_px.emplace_back(at, 100.0F);
+  features.raw_px = features.undistorted_px;
+  for (const cv::Size size_px :
+       {cv::Size(1572840, 1572840), cv::Size(-7, 0), cv::Size(640, 480),
+        cv::Size(std::numeric_limits<int>::max(), std::numeric_limits<int>::min())}) {
+    const PixelGrid grid(features, size_px);
+    std::vector<int> found;
+    grid.visit_within({319.0, 101.0}, 5.0, [&](int feature) { found.push_back(feature); });
+    EXPECT_EQ(found, std::vector<int>{5});
+    grid.visit_within({kNaN, kInfinity}, 5.0, [](int) { ADD_FAILURE() << "is near nothing"; });
+  }
+}
+
+TEST(OctaveAt, IsALevelOfThePyramidEvenOfNoRange) {
+  EXPECT_EQ(octave_at(3, 0.0, 0.0, {}), 3);
+  EXPECT_EQ(octave_at(40, 0.0, 0.0, {}), 7);
+  EXPECT_EQ(octave_at(3, 1.0, 0.0, {}), 7);
+  EXPECT_EQ(octave_at(3, 0.0, 1.0, {}), 0);
 }
 
 }  // namespace

@@ -54,34 +54,42 @@ std::optional<Match> best_near(const ProjectedPoint& point, const unsigned char*
   return Match{point.row, best.feature, best.distance_bits};
 }
 
+// Along a side. What is larger than any picture goes to the last cell.
+int num_cells(int side_px) {
+  constexpr int kMaxCells = 65536 / kCell_px;
+  return std::clamp(side_px / kCell_px, 0, kMaxCells) + 1;
+}
+
 }  // namespace
 
 int octave_at(int octave, double described_range_m, double range_m, const Config& config) {
   const double levels = std::log(described_range_m / range_m) / std::log(config.scale_factor);
+  if (std::isnan(levels)) return std::clamp(octave, 0, config.num_levels - 1);
   return static_cast<int>(std::clamp(std::round(octave + levels), 0.0, config.num_levels - 1.0));
 }
 
 PixelGrid::PixelGrid(const Features& features, cv::Size image_size_px)
     : features_(features),
-      num_columns_(image_size_px.width / kCell_px + 1),
-      num_rows_(image_size_px.height / kCell_px + 1),
-      first_of_cell_(static_cast<std::size_t>(num_columns_ * num_rows_) + 1, 0),
+      num_columns_(num_cells(image_size_px.width)),
+      num_rows_(num_cells(image_size_px.height)),
+      first_of_cell_(cell_at(num_rows_, 0) + 1, 0),
       placed_(features.undistorted_px.size()) {
-  const auto cell_at = [&](const Eigen::Vector2f& pixel) {
-    return static_cast<std::size_t>(cell_of(pixel.y(), num_rows_) * num_columns_ +
-                                    cell_of(pixel.x(), num_columns_));
+  const auto cell_with = [&](const Eigen::Vector2f& pixel) {
+    return cell_at(cell_of(pixel.y(), num_rows_), cell_of(pixel.x(), num_columns_));
   };
-  for (const auto& pixel : features.undistorted_px) ++first_of_cell_[cell_at(pixel) + 1];
+  for (const auto& pixel : features.undistorted_px) ++first_of_cell_[cell_with(pixel) + 1];
   std::partial_sum(first_of_cell_.begin(), first_of_cell_.end(), first_of_cell_.begin());
   std::vector<std::size_t> next(first_of_cell_.begin(), first_of_cell_.end() - 1);
   for (int i = 0; i < features.size(); ++i) {
     const Eigen::Vector2f& pixel = features.undistorted_px[static_cast<std::size_t>(i)];
-    placed_[next[cell_at(pixel)]++] = {pixel, i};
+    placed_[next[cell_with(pixel)]++] = {pixel, i};
   }
 }
 
-// Undistorted pixels may lie outside the picture: they go to the cells at its edge.
+// Undistorted pixels may lie outside the picture: they go to the cells at its edge, those that are
+// no number to the first.
 int PixelGrid::cell_of(double coordinate_px, int num_cells) {
+  if (std::isnan(coordinate_px)) return 0;
   return static_cast<int>(std::clamp(coordinate_px / kCell_px, 0.0, num_cells - 1.0));
 }
 

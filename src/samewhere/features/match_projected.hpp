@@ -12,7 +12,8 @@ namespace samewhere::features {
 // The features of a picture, sorted into cells, to find those near a pixel.
 class PixelGrid {
  public:
-  // `features` outlive it.
+  // `features` outlive it. Pixels may lie anywhere or be NaN, and the size may be that of no
+  // picture.
   PixelGrid(const Features& features, cv::Size image_size_px);
 
   const Features& features() const { return features_; }
@@ -26,8 +27,8 @@ class PixelGrid {
     const int last_row = cell_of(pixel.y() + radius_px, num_rows_);
     for (int row = cell_of(pixel.y() - radius_px, num_rows_); row <= last_row; ++row) {
       // the cells of a row lie one after the other
-      const auto first = static_cast<std::size_t>(row * num_columns_ + first_column);
-      const auto last = static_cast<std::size_t>(row * num_columns_ + last_column);
+      const std::size_t first = cell_at(row, first_column);
+      const std::size_t last = cell_at(row, last_column);
       for (std::size_t i = first_of_cell_[first]; i < first_of_cell_[last + 1]; ++i) {
         const Eigen::Vector2d offset = placed_[i].pixel.template cast<double>() - pixel;
         if (offset.squaredNorm() <= radius_px * radius_px) visit(placed_[i].index);
@@ -42,6 +43,10 @@ class PixelGrid {
   };
 
   static int cell_of(double coordinate_px, int num_cells);
+  std::size_t cell_at(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(num_columns_) +
+           static_cast<std::size_t>(column);
+  }
 
   const Features& features_;
   int num_columns_;

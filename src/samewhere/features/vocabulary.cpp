@@ -120,7 +120,7 @@ void save_vocabulary(const Vocabulary& vocabulary, const std::filesystem::path& 
 }
 
 Vocabulary load_vocabulary(const std::filesystem::path& path) {
-  const std::string file = core::read_file(path);
+  const std::string file = core::read_file(path, core::kNetworkLimit);
   const std::string_view bytes = file;
   if (!bytes.starts_with(kMagic))
     refuse(path, "is no vocabulary; expected a file that `samewhere train words` has written");

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -12,6 +14,8 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/grey.hpp>
+#include <samewhere/core/median.hpp>
+#include <samewhere/core/random.hpp>
 #include <samewhere/geometry/calibration.hpp>
 #include <samewhere/geometry/camera.hpp>
 
@@ -21,6 +25,7 @@ namespace {
 using core::InputError;
 
 constexpr double kDegrees_per_rad = 180.0 / std::numbers::pi;
+constexpr std::size_t kMinViews = 3;
 
 [[noreturn]] void fail_alike(double largest_rad) {
   throw InputError(
@@ -189,9 +194,136 @@ std::optional<std::vector<cv::Point2f>> find_board(const cv::Mat& image, const B
   return corners;
 }
 
+namespace {
+
+using Corners = std::vector<cv::Point2f>;
+
+// More than a detector errs; a view that errs less belongs to the camera.
+constexpr double kMinError_px = 0.3;
+
+std::vector<Corners> chosen(const std::vector<Corners>& views,
+                            const std::vector<std::size_t>& which) {
+  std::vector<Corners> some;
+  for (const std::size_t view : which) some.push_back(views[view]);
+  return some;
+}
+
+// Of each view, fitted to or not, with the pose that suits it best.
+std::vector<double> errors_of_views_px(const Fit& fit, const std::vector<cv::Point3f>& board,
+                                       const std::vector<Corners>& views) {
+  std::vector<double> errors_px;
+  for (const Corners& view : views) {
+    cv::Mat turn;
+    cv::Mat shift;
+    cv::solvePnP(board, view, fit.k, fit.distortion, turn, shift);
+    Corners projected;
+    cv::projectPoints(board, turn, shift, fit.k, fit.distortion, projected);
+    errors_px.push_back(cv::norm(projected, view) / std::sqrt(static_cast<double>(view.size())));
+  }
+  return errors_px;
+}
+
+// A few views by chance, ascending.
+std::vector<std::size_t> drawn(std::size_t num_views, std::size_t count, core::Random& random) {
+  std::vector<int> few =
+      random.distinct_indices(static_cast<int>(count), static_cast<int>(num_views));
+  std::sort(few.begin(), few.end());
+  return {few.begin(), few.end()};
+}
+
+// The errors of all views under the camera of a few, of which half of all views err least (least
+// median, Rousseeuw 1984). Empty: no few views make a camera.
+std::vector<double> errors_by_least_median_px(const std::vector<cv::Point3f>& board,
+                                              const std::vector<Corners>& views,
+                                              const cv::Size& size_px) {
+  constexpr int kNumDraws = 20;
+  constexpr std::size_t kNumDrawn = 4;
+  core::Random random(1);
+  std::vector<double> best_px;
+  for (int i = 0; i < kNumDraws; ++i) {
+    const auto few = drawn(views.size(), std::min(kNumDrawn, views.size() - 1), random);
+    try {
+      const Fit fit = fit_camera(board, chosen(views, few), size_px);
+      std::vector<double> errors_px = errors_of_views_px(fit, board, views);
+      if (best_px.empty() || core::median(errors_px) < core::median(best_px))
+        best_px = std::move(errors_px);
+    } catch (const InputError&) {  // these few are alike
+    } catch (const cv::Exception&) {
+    }
+  }
+  return best_px;
+}
+
+std::vector<std::size_t> views_below(const std::vector<double>& errors_px, double limit_px) {
+  std::vector<std::size_t> below;
+  for (std::size_t i = 0; i < errors_px.size(); ++i) {
+    if (errors_px[i] <= limit_px) below.push_back(i);
+  }
+  return below;
+}
+
+// The views of one camera: those that err by no more than several times the median. All of them if
+// all err little or alike, or if fewer than two thirds agree.
+std::vector<std::size_t> views_of_one_camera(const Fit& fit_to_all,
+                                             const std::vector<cv::Point3f>& board,
+                                             const std::vector<Corners>& views,
+                                             const cv::Size& size_px) {
+  constexpr double kManyTimes = 3.0;
+  constexpr double kDetector_px = 0.15;  // errors of sound views, however many times their median
+  constexpr double kEvenRatio = 1.3;     // noise alone makes views differ by less
+  constexpr int kNumRounds = 3;
+  std::vector<std::size_t> all(views.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::size_t num_needed = std::max(kMinViews, views.size() - views.size() / 3);
+  const std::vector<double> fitted_px(fit_to_all.view_rmse_px.begin<double>(),
+                                      fit_to_all.view_rmse_px.end<double>());
+  const double worst_px = *std::max_element(fitted_px.begin(), fitted_px.end());
+  const double median_px = core::median(fitted_px).value_or(worst_px);
+  const bool is_even = worst_px <= kDetector_px || worst_px <= kEvenRatio * median_px;
+  if (is_even || num_needed == views.size()) return all;
+  std::vector<double> errors_px = errors_by_least_median_px(board, views, size_px);
+  std::vector<std::size_t> sound;
+  for (int round = 0; round < kNumRounds; ++round) {
+    const double usual_px = core::median(errors_px).value_or(worst_px);
+    sound = views_below(errors_px, std::max(kManyTimes * usual_px, kMinError_px));
+    if (sound.size() < num_needed || sound.size() == views.size()) return all;
+    errors_px = errors_of_views_px(fit_camera(board, chosen(views, sound), size_px), board, views);
+  }
+  return sound;
+}
+
+// The views that the camera is fitted to, and what is left out.
+struct SoundFit {
+  Fit fit;
+  std::vector<std::size_t> used;
+  std::vector<std::size_t> left_out;
+};
+
+SoundFit fit_to_sound_views(const std::vector<cv::Point3f>& board,
+                            const std::vector<Corners>& views, const cv::Size& size_px) {
+  SoundFit sound{fit_camera(board, views, size_px), {}, {}};
+  sound.used = views_of_one_camera(sound.fit, board, views, size_px);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!std::binary_search(sound.used.begin(), sound.used.end(), i)) sound.left_out.push_back(i);
+  }
+  if (!sound.left_out.empty()) sound.fit = fit_camera(board, chosen(views, sound.used), size_px);
+  return sound;
+}
+
+// Each view's: of those that the camera is fitted to as fitted, of the others at their best.
+std::vector<double> view_errors_px(const SoundFit& sound, const std::vector<cv::Point3f>& board,
+                                   const std::vector<Corners>& views) {
+  std::vector<double> errors_px(views.size());
+  if (!sound.left_out.empty()) errors_px = errors_of_views_px(sound.fit, board, views);
+  for (std::size_t i = 0; i < sound.used.size(); ++i)
+    errors_px[sound.used[i]] = sound.fit.view_rmse_px.at<double>(static_cast<int>(i));
+  return errors_px;
+}
+
+}  // namespace
+
 Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Point2f>>& views,
                       const cv::Size& size_px) {
-  constexpr std::size_t kMinViews = 3;
   constexpr double kMinTilt_rad = 10.0 / kDegrees_per_rad;
   if (views.size() < kMinViews) {
     throw InputError(
@@ -200,7 +332,8 @@ Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Poin
                     board.num_columns, board.num_rows, views.size(), kMinViews));
   }
   const std::vector<cv::Point3f> corners = corners_in_board(board);
-  const Fit fit = fit_camera(corners, views, size_px);
+  const SoundFit sound = fit_to_sound_views(corners, views, size_px);
+  const Fit& fit = sound.fit;
   const double tilt_rad = largest_tilt_rad(fit.turns);
   if (!std::isfinite(fit.rmse_px) || !(tilt_rad >= kMinTilt_rad)) fail_alike(tilt_rad);
   const core::PinholeRadtan camera = camera_of(fit.k, fit.distortion, size_px);
@@ -209,7 +342,8 @@ Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Poin
   require_plausible_view(camera);
   return {.camera = camera,
           .rmse_px = fit.rmse_px,
-          .view_rmse_px = {fit.view_rmse_px.begin<double>(), fit.view_rmse_px.end<double>()},
+          .view_rmse_px = view_errors_px(sound, corners, views),
+          .left_out = sound.left_out,
           .focal_sd_ratio = sd_ratio};
 }
 

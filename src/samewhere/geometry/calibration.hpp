@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -27,14 +28,17 @@ std::vector<cv::Point3f> corners_in_board(const Board& board);
 std::optional<std::vector<cv::Point2f>> find_board(const cv::Mat& image, const Board& board);
 
 struct Calibration {
-  core::PinholeRadtan camera;        // k3 stays 0: boards hardly reach where it would show
-  double rmse_px = 0.0;              // reprojection error of all corners
-  std::vector<double> view_rmse_px;  // of each view's
-  double focal_sd_ratio = 0.0;       // standard deviation of fx or fy, the larger share of it
+  core::PinholeRadtan camera;         // k3 stays 0: boards hardly reach where it would show
+  double rmse_px = 0.0;               // reprojection error of all corners of the views used
+  std::vector<double> view_rmse_px;   // of each view's, used or not
+  std::vector<std::size_t> left_out;  // views that do not belong to this camera, by position
+  double focal_sd_ratio = 0.0;        // standard deviation of fx or fy, the larger share of it
 };
 
 // The camera that saw the board in all views, each the corners of one picture of `size_px`: Zhang's
-// method (2000), refined with k1 k2 p1 p2. Throws InputError for fewer than 3 views; if the boards
+// method (2000), refined with k1 k2 p1 p2. A view whose error is several times that of the others
+// (taken at another zoom, of a bent board) is left out, if two thirds of them agree.
+// Throws InputError for fewer than 3 views; if the boards
 // of all views are nearly parallel, for then no focal length is wrong; if fx and fy are not known
 // to 3 % (standard deviation); and if the field of view is that of no such lens (camera.hpp).
 Calibration calibrate(const Board& board, const std::vector<std::vector<cv::Point2f>>& views,

@@ -122,6 +122,36 @@ TEST(Calibration, TheErrorOfEachViewIsItsOwn) {
   EXPECT_NEAR(found.view_rmse_px[4], std::sqrt(2.0), 0.3);
 }
 
+// Of the same size, by a camera of another zoom.
+TEST(Calibration, ViewsOfAnotherCameraAreLeftOut) {
+  for (const double zoom : {0.8, 1.1, 1.4}) {
+    for (const std::vector<std::size_t>& odd : {std::vector<std::size_t>{5}, {2, 7}}) {
+      core::PinholeRadtan other = kCamera;
+      other.fx_px *= zoom;
+      other.fy_px *= zoom;
+      core::Random random(3);
+      std::vector<std::vector<cv::Point2f>> views;
+      for (const core::Rigid3& pose : tilted_views()) views.push_back(measured(pose, 0.1, random));
+      for (const std::size_t view : odd) views[view] = projected(tilted_views()[view], other);
+      const Calibration found = calibrate(kBoard, views, {640, 480});
+      EXPECT_EQ(found.left_out, odd) << zoom;
+      EXPECT_NEAR(found.camera.fx_px, kCamera.fx_px, 0.005 * kCamera.fx_px) << zoom;
+      for (const std::size_t view : odd) EXPECT_GT(found.view_rmse_px[view], 0.3) << zoom;
+      EXPECT_LT(found.rmse_px, 0.2) << zoom;
+    }
+  }
+}
+
+TEST(Calibration, SoundViewsAreAllUsed) {
+  for (const double noise_px : {0.05, 0.3, 1.0}) {
+    core::Random random(4);
+    std::vector<std::vector<cv::Point2f>> views;
+    for (const core::Rigid3& pose : tilted_views())
+      views.push_back(measured(pose, noise_px, random));
+    EXPECT_THAT(calibrate(kBoard, views, {640, 480}).left_out, testing::IsEmpty()) << noise_px;
+  }
+}
+
 TEST(Calibration, FewerThanThreeViewsAreRefused) {
   const auto poses = tilted_views();
   EXPECT_THAT(

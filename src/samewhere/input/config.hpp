@@ -9,10 +9,15 @@ namespace samewhere::input {
 struct Config {
   std::string camera;         // path of a camera file; empty: the one that lies with the images
   double fps = 0.0;           // of recordings without stamps; 0: the format's own
-  double depth_factor = 0.0;  // depth units per metre; 0: the format's own
+  double depth_factor = 0.0;  // depth units per metre; 0: the camera file's or the format's own
+  double fov_deg = 0.0;       // horizontal, of a camera without calibration; 0: guessed
+  int focal_length_keyframes = 30;  // of the first pass that estimates a guessed focal length
   double max_stamp_difference_s = 0.02;
   bool depth = true;
   bool realtime = false;  // of a camera, or of a video that is played, the newest frame
+  // No setting but the caller's word: whether a calibration that cannot be read ends the run. Where
+  // it does not, the recording's own is warned of and left out.
+  bool needs_calibration = true;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
@@ -23,9 +28,20 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .min = 0.0,
          .max = 10000.0});
   visit("depth_factor", config.depth_factor,
-        {.help = "depth units per metre; 0: 5000 for TUM RGB-D, 1000 for others",
+        {.help = "depth units per metre; 0: what the camera file says, or else 5000 for TUM RGB-D, "
+                 "1000 for others",
          .min = 0.0,
          .max = 1e6});
+  visit("fov_deg", config.fov_deg,
+        {.help = "horizontal field of view of a camera without calibration, degrees; 0: guessed",
+         .min = 0.0,
+         .max = 170.0});
+  visit(
+      "focal_length_keyframes", config.focal_length_keyframes,
+      {.help = "keyframes of the first pass over a recording whose focal length is guessed, which "
+               "estimates it; 0: it stays as guessed",
+       .min = 0,
+       .max = 1000});
   visit("max_stamp_difference_s", config.max_stamp_difference_s,
         {.help = "largest distance in time of pictures that make one frame, s",
          .min = 0.0,

@@ -3,34 +3,35 @@
 
 #include <fmt/format.h>
 
-#include <samewhere/core/file.hpp>
 #include <samewhere/input/csv_file.hpp>
 
 namespace samewhere::input {
 namespace {
 
-// A carriage return at the end of a line is white space too.
-std::string trimmed(const std::string& word) {
-  constexpr const char* kWhiteSpace = " \t\r";
-  const std::size_t first = word.find_first_not_of(kWhiteSpace);
-  if (first == std::string::npos) return "";
-  return word.substr(first, word.find_last_not_of(kWhiteSpace) - first + 1);
+// At commas; where a line has none, at semicolons, or else at white space, as some tools write.
+std::vector<std::string> words_of(const std::string& content) {
+  const auto has = [&content](char c) { return content.find(c) != std::string::npos; };
+  if (!has(',') && !has(';')) return core::words_between_commas(content);
+  std::istringstream in(content);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(in, word, has(',') ? ',' : ';');)
+    words.emplace_back(core::trimmed(word));
+  return words;
 }
 
 }  // namespace
 
 std::vector<core::TextLine> read_csv_lines(const std::filesystem::path& path) {
-  std::istringstream text(core::read_file(path));
+  std::istringstream text(core::read_text(path));
   std::vector<core::TextLine> lines;
   int line_number = 0;
   for (std::string line; std::getline(text, line);) {
     ++line_number;
-    const std::string content = trimmed(line);
+    std::string content(core::trimmed(line));
     if (content.empty() || content.front() == '#') continue;
-    std::istringstream in(content);
-    std::vector<std::string> words;
-    for (std::string word; std::getline(in, word, ',');) words.push_back(trimmed(word));
-    lines.push_back({fmt::format("{}, line {}", path.string(), line_number), std::move(words)});
+    std::vector<std::string> words = words_of(content);
+    lines.push_back({fmt::format("{}, line {}", path.string(), line_number), std::move(words),
+                     std::move(content)});
   }
   return lines;
 }

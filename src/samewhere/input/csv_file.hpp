@@ -8,7 +8,8 @@
 namespace samewhere::input {
 
 // All lines of a CSV file but the blank ones and those that begin with '#', cut into words at the
-// commas; white space around a word is dropped. Throws InputError if the file cannot be read.
+// commas (where a line has none: at semicolons, or else at white space); white space around a word
+// is dropped. Throws InputError as core::read_text.
 std::vector<core::TextLine> read_csv_lines(const std::filesystem::path& path);
 
 }  // namespace samewhere::input

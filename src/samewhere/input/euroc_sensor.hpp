@@ -11,11 +11,12 @@ namespace samewhere::input {
 // not what it has to be. T_BS is body from sensor.
 
 struct EurocCamera {
-  core::PinholeRadtan camera;
+  core::Camera camera;
   core::Rigid3 body_from_camera;
 };
 
-// camera_model pinhole with distortion_model radial-tangential; other models are refused.
+// camera_model pinhole with distortion_model radial-tangential (radtan, plumb_bob), rational,
+// equidistant (a fisheye) or none; other models are refused.
 EurocCamera read_euroc_camera(const std::filesystem::path& file);
 
 // Random walks that the file does not tell are 0.

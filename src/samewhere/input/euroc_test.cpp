@@ -90,6 +90,14 @@ class Euroc : public Open {
     return said;
   }
 
+  std::string said_with(const std::string& name, const std::string& content) {
+    const std::string before = core::read_file(folder_.at(name));
+    folder_.write(name, content);
+    std::string said = said_on_opening();
+    folder_.write(name, before);
+    return said;
+  }
+
   static constexpr std::array<const char*, 3> kNames = {
       "1403636579763555584.png", "1403636579813555456.png", "1403636579863555584.png"};
 };
@@ -222,30 +230,85 @@ TEST_F(Euroc, TheTwoCamerasArePairedByStamp) {
   EXPECT_EQ(read_all().front().images[1].at<std::uint8_t>(0, 0), 77);
   config_.max_stamp_difference_s = 0.001;
   EXPECT_THAT(complaint_on_opening(),
-              AllOf(HasSubstr("mav0/cam0/data.csv, line 2"), HasSubstr(kNames[0]),
-                    HasSubstr("no partner within 0.001 s"), HasSubstr("mav0/cam1/data.csv")));
+              AllOf(HasSubstr(kNames[0]), HasSubstr("no partner within 0.001 s"),
+                    HasSubstr("mav0/cam1/data.csv"), HasSubstr("2 of 3 pictures")));
 }
 
-TEST_F(Euroc, AMissingFileIsNamed) {
+TEST_F(Euroc, AMissingFileIsNamedAndRefusedIfItIsNeeded) {
+  const auto said_without = [this](const std::string& name) {
+    const std::string before = core::read_file(folder_.at(name));
+    std::filesystem::remove(folder_.at(name));
+    std::string said = said_on_opening();
+    folder_.write(name, before);
+    return said;
+  };
   for (const char* name :
-       {"cam0/sensor.yaml", "cam0/data.csv", "cam1/sensor.yaml", "cam1/data.csv",
-        "imu0/sensor.yaml", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
+       {"cam0/sensor.yaml", "cam0/data.csv", "cam1/sensor.yaml", "cam1/data.csv"}) {
     const std::string file = "mav0/" + std::string(name);
-    const std::string before = core::read_file(folder_.at(file));
-    std::filesystem::remove(folder_.at(file));
-    EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr(file), HasSubstr("No such file")));
-    folder_.write(file, before);
+    EXPECT_THAT(said_without(file),
+                AllOf(HasSubstr("refused: "), HasSubstr(file), HasSubstr("No such file")));
   }
-  EXPECT_EQ(complaint_on_opening(), "no error");
+  for (const char* name :
+       {"imu0/sensor.yaml", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
+    const std::string file = "mav0/" + std::string(name);
+    EXPECT_THAT(said_without(file), AllOf(testing::Not(HasSubstr("refused")), HasSubstr(file),
+                                          HasSubstr("No such file")));
+  }
   for (const char* camera : {"cam0", "cam1"}) {
-    const std::string image = fmt::format("mav0/{}/data/{}", camera, kNames[1]);
-    const std::string before = core::read_file(folder_.at(image));
-    std::filesystem::remove(folder_.at(image));
-    EXPECT_THAT(complaint_on_opening(),
-                AllOf(HasSubstr(fmt::format("mav0/{}/data.csv, line 3", camera)),
-                      HasSubstr(kNames[1]), HasSubstr("does not exist")));
-    folder_.write(image, before);
+    EXPECT_THAT(said_without(fmt::format("mav0/{}/data/{}", camera, kNames[1])),
+                AllOf(HasSubstr("1 of 3 p"), HasSubstr(kNames[1]),
+                      HasSubstr(fmt::format("mav0/{}/data.csv, line 3", camera)),
+                      HasSubstr("does not exist")))
+        << camera;
   }
+  EXPECT_EQ(said_on_opening(), "");
+}
+
+TEST_F(Euroc, AFrameWithoutPartnerIsLeftOutAndCounted) {
+  const std::string list = core::read_file(folder_.at("mav0/cam1/data.csv"));
+  const std::size_t second = list.find("1403636579813555456,");
+  const std::size_t third = list.find("1403636579863555584,");
+  EXPECT_THAT(
+      said_with("mav0/cam1/data.csv", list.substr(0, second) + list.substr(third)),
+      AllOf(HasSubstr("1 of 3 pairs of pictures"), HasSubstr(kNames[1]), HasSubstr("no partner")));
+  folder_.write("mav0/cam1/data.csv", list.substr(0, second) + list.substr(third));
+  const std::vector<core::Frame> frames = read_all();
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].name, kNames[2]);
+  EXPECT_EQ(frames[1].images.size(), 2U);
+  EXPECT_EQ(frames[1].imu_since_last.size(), 2U) << "of both intervals";
+}
+
+TEST_F(Euroc, AGivenCameraReplacesACalibrationThatCannotBeRead) {
+  folder_.write("mine.txt", kCamera);
+  for (const std::string& sensor : {replaced(kLeftSensor, "pinhole", "omni"), std::string()}) {
+    folder_.write("mav0/cam0/sensor.yaml", sensor);
+    config_ = {};
+    EXPECT_THAT(said_on_opening(), HasSubstr("refused: "));
+    config_.camera = folder_.at("mine.txt").string();
+    EXPECT_THAT(said_on_opening(),
+                AllOf(HasSubstr("the second camera is not used"), HasSubstr("truth of the body")));
+    const core::Frame frame = open()->next().value();
+    EXPECT_EQ(frame.images.size(), 1U);
+    EXPECT_EQ(std::get<core::PinholeRadtan>(frame.rig->cameras.at(0)).fx_px, 30.0);
+    config_ = {.needs_calibration = false};
+    EXPECT_THAT(said_on_opening(), HasSubstr("the calibration is not used"));
+    EXPECT_FALSE(open()->info().is_calibrated);
+    EXPECT_EQ(read_all().size(), 3U);
+  }
+}
+
+TEST_F(Euroc, TablesMayBeWrittenByOtherTools) {
+  const std::string list = fmt::format(
+      "timestamp,filename\r1403636579763555584,{}\r1403636579813555456,{}\r1403636579863555584,{}"
+      "\r",
+      kNames[0], kNames[1], kNames[2]);
+  EXPECT_EQ(said_with("mav0/cam0/data.csv", "\xef\xbb\xbf" + list), "");
+  std::string blanks = list;
+  std::replace(blanks.begin(), blanks.end(), ',', ' ');
+  EXPECT_EQ(said_with("mav0/cam0/data.csv", blanks), "");
+  EXPECT_THAT(said_with("mav0/cam0/data.csv", std::string("\xff\xfe#\0\n\0", 6)),
+              AllOf(HasSubstr("refused: "), HasSubstr("UTF-16")));
 }
 
 TEST_F(Euroc, ABrokenListIsNamedWithItsLine) {
@@ -263,18 +326,18 @@ TEST_F(Euroc, ABrokenListIsNamedWithItsLine) {
   EXPECT_THAT(said(fmt::format("20,{0}\n20,{0}\n", kNames[0])), HasSubstr("stamp 20 after 20"));
 }
 
-TEST_F(Euroc, BrokenSamplesAndPosesAreNamedWithTheirLine) {
-  EXPECT_THAT(complaint_with("mav0/imu0/data.csv", "10,1,2,3,4,5\n"),
+TEST_F(Euroc, BrokenSamplesAndPosesAreLeftOutAndNamed) {
+  EXPECT_THAT(said_with("mav0/imu0/data.csv", "10,1,2,3,4,5\n"),
               AllOf(HasSubstr("imu0/data.csv, line 1"), HasSubstr("found 6 values")));
-  EXPECT_THAT(complaint_with("mav0/imu0/data.csv", "10,1,2,3,4,5,nan\n"), HasSubstr("'nan'"));
+  EXPECT_THAT(said_with("mav0/imu0/data.csv", "10,1,2,3,4,5,nan\n"), HasSubstr("'nan'"));
   const std::string poses = "mav0/state_groundtruth_estimate0/data.csv";
-  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0\n"), HasSubstr("found 7 values"));
-  EXPECT_THAT(complaint_with(poses, "10,1,2,3,1,0,0,x\n"), HasSubstr("'x'"));
-  EXPECT_THAT(complaint_with(poses,
-                             "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0,0\n"
-                             "11,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
+  EXPECT_THAT(said_with(poses, "10,1,2,3,1,0,0\n"), HasSubstr("found 7 values"));
+  EXPECT_THAT(said_with(poses, "10,1,2,3,1,0,0,x\n"), HasSubstr("'x'"));
+  EXPECT_THAT(said_with(poses,
+                        "10,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0,0\n"
+                        "11,1,2,3,1,0,0,0,1,2,3,0,0,0,0,0\n"),
               AllOf(HasSubstr("line 2"), HasSubstr("found 16 values")));
-  EXPECT_THAT(complaint_with(poses, "10,1,2,3,2,0,0,0\n"),
+  EXPECT_THAT(said_with(poses, "10,1,2,3,2,0,0,0\n"),
               AllOf(HasSubstr("line 1"), HasSubstr("norm 2")));
 }
 
@@ -286,13 +349,14 @@ TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
               AllOf(HasSubstr("cam0/sensor.yaml, line 11: resolution"), HasSubstr("1 values")));
   EXPECT_THAT(said("[32, 24]", "[32, 24.5]"), HasSubstr("found 24.5"));
   EXPECT_THAT(said("[32, 24]", "[32, 1e30]"), HasSubstr("pixels"));
-  EXPECT_THAT(said("[32, 24]", "[[32, 24]]"), HasSubstr("plain values"));
+  EXPECT_THAT(said("[32, 24]", "[[[32, 24]]]"), HasSubstr("plain values"));
   EXPECT_THAT(said("intrinsics", "intrinsic"), HasSubstr("has no intrinsics"));
-  EXPECT_THAT(said("[30.5", "[-30.5"), HasSubstr("focal lengths -30.5"));
-  EXPECT_THAT(said("15.5,", "155,"), AllOf(HasSubstr("intrinsics"), HasSubstr("outside")));
+  EXPECT_THAT(said("[30.5", "[-30.5"), HasSubstr("fx = -30.5"));
+  EXPECT_THAT(said("15.5,", "155,"), AllOf(HasSubstr("centre (155, "), HasSubstr("outside")));
   EXPECT_THAT(said("pinhole", "omni"), AllOf(HasSubstr("omni"), HasSubstr("pinhole")));
-  EXPECT_THAT(said("radial-tangential", "equidistant"), HasSubstr("radial-tangential"));
-  EXPECT_THAT(said("-0.28, ", ""), HasSubstr("distortion_coefficients"));
+  EXPECT_THAT(said("radial-tangential", "fov"), HasSubstr("radial-tangential"));
+  EXPECT_THAT(said("-0.28, ", ""), HasSubstr("3 distortion values"));
+  EXPECT_THAT(said("-0.28, ", "-1e9, "), HasSubstr("k1 = -1000000000"));
   EXPECT_THAT(said("T_BS:", "T_XX:"), HasSubstr("has no T_BS"));
   EXPECT_THAT(said("  data:", "  dat:"), HasSubstr("has no T_BS.data"));
   EXPECT_THAT(said("[0.0, -1.0", "[0.0, -2.0"), HasSubstr("no rigid transform"));
@@ -301,10 +365,29 @@ TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
   EXPECT_THAT(complaint_with("mav0/cam0/sensor.yaml", "%YAML:1.0"), HasSubstr("sensor.yaml"));
   EXPECT_THAT(complaint_with("mav0/cam0/sensor.yaml", ""), HasSubstr("sensor.yaml"));
   const std::string imu = core::read_file(folder_.at("mav0/imu0/sensor.yaml"));
-  EXPECT_THAT(complaint_with("mav0/imu0/sensor.yaml", replaced(imu, "2.0e-3", "-1")),
+  EXPECT_THAT(said_with("mav0/imu0/sensor.yaml", replaced(imu, "2.0e-3", "-1")),
               AllOf(HasSubstr("accelerometer_noise_density"), HasSubstr("-1")));
-  EXPECT_THAT(complaint_with("mav0/imu0/sensor.yaml", replaced(imu, "1.9393e-05", "-2")),
+  EXPECT_THAT(said_with("mav0/imu0/sensor.yaml", replaced(imu, "1.9393e-05", "-2")),
               AllOf(HasSubstr("gyroscope_random_walk"), HasSubstr("-2")));
+}
+
+TEST_F(Euroc, TheModelGoesByItsOtherNamesToo) {
+  for (const char* const name : {"radtan", "plumb_bob", "RadTan", "radial_tangential"}) {
+    folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "radial-tangential", name));
+    EXPECT_EQ(std::get<core::PinholeRadtan>(open()->next()->rig->cameras[0]).k1, -0.28) << name;
+  }
+  folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "pinhole", "Pinhole"));
+  EXPECT_EQ(complaint_on_opening(), "no error");
+  std::string bare = replaced(kLeftSensor, "distortion_model", "model_of_old");
+  bare = replaced(bare, "distortion_coefficients", "coefficients_of_old");
+  folder_.write("mav0/cam0/sensor.yaml", bare);
+  EXPECT_EQ(std::get<core::PinholeRadtan>(open()->next()->rig->cameras[0]).k1, 0.0);
+}
+
+TEST_F(Euroc, AnEquidistantCameraIsAFisheye) {
+  folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "radial-tangential", "equidistant"));
+  const core::Camera camera = open()->next()->rig->cameras[0];
+  EXPECT_EQ(std::get<core::KannalaBrandt>(camera).k1, -0.28);
 }
 
 TEST_F(Euroc, DamagedSensorFilesNeverCrash) {

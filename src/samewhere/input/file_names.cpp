@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/file_names.hpp>
+#include <samewhere/input/name_stamps.hpp>
 
 namespace samewhere::input {
 namespace {
@@ -49,39 +52,65 @@ std::optional<int> frame_number(std::string_view name) {
   while (!name.empty() && !is_digit(name.back())) name.remove_suffix(1);
   std::size_t num_digits = 0;
   while (num_digits < name.size() && is_digit(name[name.size() - 1 - num_digits])) ++num_digits;
-  if (num_digits == 0 || num_digits > kMaxDigits) return std::nullopt;
+  if (num_digits == 0) return std::nullopt;
+  for (; num_digits > 1 && name[name.size() - num_digits] == '0'; --num_digits) {
+  }
+  if (num_digits > kMaxDigits) return std::nullopt;
   int number = 0;
   std::from_chars(name.data() + name.size() - num_digits, name.data() + name.size(), number);
   return number;
 }
 
-bool is_image_name(std::string_view name) {
+namespace {
+
+std::string small_extension(std::string_view name) {
   std::string extension = std::filesystem::path(name).extension().string();
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  return extension == ".jpg" || extension == ".jpeg" || extension == ".png";
+  return extension;
 }
 
-bool is_there(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
+bool is_usual_image_name(std::string_view name) {
+  const std::string extension = small_extension(name);
+  return !name.starts_with('.') &&
+         (extension == ".jpg" || extension == ".jpeg" || extension == ".png");
 }
 
-bool is_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_directory(path, error);
+}  // namespace
+
+bool is_image_name(std::string_view name) {
+  if (is_usual_image_name(name)) return true;
+  constexpr std::array kOthers = {".bmp", ".pgm", ".ppm", ".pnm", ".tif", ".tiff", ".webp"};
+  const std::string extension = small_extension(name);
+  return !name.starts_with('.') && name != kSamePlaceTable &&
+         std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end();
 }
+
+bool is_there(const std::filesystem::path& path) { return core::is_there(path); }
+
+bool is_folder(const std::filesystem::path& path) { return core::is_folder(path); }
 
 std::vector<std::string> sorted_names(const std::filesystem::path& folder) {
   std::error_code error;
   std::vector<std::string> names;
   std::filesystem::directory_iterator entry(folder, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    names.push_back(entry->path().filename().string());
+    std::string name = entry->path().filename().string();
+    if (!name.starts_with('.')) names.push_back(std::move(name));
   }
   if (error) throw core::InputError(folder.string() + ": cannot be read: " + error.message());
   std::sort(names.begin(), names.end(), &natural_less);
+  return names;
+}
+
+std::vector<std::string> picture_names(const std::filesystem::path& folder) {
+  std::vector<std::string> names = sorted_names(folder);
+  const bool has_usual = std::any_of(names.begin(), names.end(), &is_usual_image_name);
+  std::erase_if(names, [has_usual](const std::string& name) {
+    return !(has_usual ? is_usual_image_name(name) : is_image_name(name));
+  });
+  order_by_decimals(names);
   return names;
 }
 

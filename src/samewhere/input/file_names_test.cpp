@@ -47,6 +47,8 @@ TEST(FileNames, TheFrameNumberIsTheLastNumberBeforeTheExtension) {
   EXPECT_EQ(frame_number("b4_hall_c024_frame_000001.jpg"), 1);
   EXPECT_EQ(frame_number("clip7.mp4"), 7);
   EXPECT_EQ(frame_number("123456789.png"), 123456789);
+  EXPECT_EQ(frame_number("0000000012.png"), 12);
+  EXPECT_EQ(frame_number("0000000000.png"), 0);
   EXPECT_EQ(frame_number("1403636579763555584.png"), std::nullopt);
   EXPECT_EQ(frame_number("door.jpg"), std::nullopt);
   EXPECT_EQ(frame_number(""), std::nullopt);
@@ -56,7 +58,11 @@ TEST(FileNames, ImagesAreToldByTheirEnding) {
   EXPECT_TRUE(is_image_name("a.jpg"));
   EXPECT_TRUE(is_image_name("a.JPEG"));
   EXPECT_TRUE(is_image_name("a.b.Png"));
-  EXPECT_FALSE(is_image_name("a.pgm"));
+  EXPECT_TRUE(is_image_name("a.PGM"));
+  EXPECT_TRUE(is_image_name("a.tiff"));
+  EXPECT_FALSE(is_image_name("same_place.pgm"));
+  EXPECT_FALSE(is_image_name("._a.jpg"));
+  EXPECT_FALSE(is_image_name("a.txt"));
   EXPECT_FALSE(is_image_name("jpg"));
 }
 

@@ -1,10 +1,16 @@
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/median.hpp>
+#include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/depth_check.hpp>
+#include <samewhere/input/exif.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/image_file.hpp>
 
@@ -16,13 +22,10 @@ using core::InputError;
 // A camera of a format that does not say how large its pictures are.
 core::Camera camera_of_size(const core::Camera& unsized_camera, const cv::Size& size_px,
                             const std::filesystem::path& image) {
-  auto camera = std::get<core::PinholeRadtan>(unsized_camera);
-  camera.width_px = size_px.width;
-  camera.height_px = size_px.height;
-  if (is_centre_inside(camera)) return camera;
-  throw InputError(fmt::format(
-      "{}: wrong calibration: is {} x {} pixels, the centre ({}, {}) of its camera lies outside",
-      image.string(), size_px.width, size_px.height, camera.cx_px, camera.cy_px));
+  core::Camera camera = with_size(unsized_camera, size_px);
+  const auto fault = geometry::fault_of(camera);
+  if (!fault) return camera;
+  throw InputError(fmt::format("{}: wrong calibration of its camera: {}", image.string(), *fault));
 }
 
 cv::Size size_of(const core::Camera& camera) {
@@ -52,6 +55,28 @@ core::Rig rig_of(const Recording& recording, const std::vector<cv::Size>& sizes_
   return rig;
 }
 
+// None where the recording goes on without one.
+core::Rig rig_if_needed(Recording& recording, const std::vector<cv::Size>& sizes_px) {
+  try {
+    return rig_of(recording, sizes_px);
+  } catch (const InputError& error) {
+    if (recording.needs_calibration) throw;
+    spdlog::warn("{}; the calibration is not used", error.what());
+  }
+  keep_first_camera(recording);
+  return {};
+}
+
+// A calibration is that of the sensor, and pictures are used as the sensor gave them.
+void warn_of_rotation(const std::filesystem::path& image) {
+  const int orientation = exif_orientation(core::read_file(image, core::kPictureLimit));
+  if (orientation <= 1) return;
+  spdlog::warn(
+      "{}: is noted to be turned or mirrored (EXIF orientation {}); the pictures are used as they "
+      "are stored, and the calibration has to be of such pictures",
+      image.string(), orientation);
+}
+
 void check_size(const std::filesystem::path& file, const cv::Mat& image, const cv::Size& size_px) {
   if (image.size() == size_px) return;
   throw InputError(fmt::format("{}: is {} x {} pixels, expected {} x {} as the first image",
@@ -77,7 +102,9 @@ FileSource::FileSource(std::string name, Recording recording) : recording_(std::
   }
   core::require(recording_.rig.cameras.empty() || recording_.rig.cameras.size() == sizes_px_.size(),
                 "a calibrated recording has one image per camera");
-  rig_ = std::make_shared<const core::Rig>(rig_of(recording_, sizes_px_));
+  warn_of_rotation(recording_.frames.front().images.front());
+  rig_ = std::make_shared<const core::Rig>(rig_if_needed(recording_, sizes_px_));
+  sizes_px_.resize(recording_.frames.front().images.size());
   const bool has_depth = std::any_of(recording_.frames.begin(), recording_.frames.end(),
                                      [](const FrameFiles& files) { return !files.depth.empty(); });
   info_ = {.name = std::move(name),
@@ -106,6 +133,10 @@ std::optional<core::Frame> FileSource::next() {
   if (!files.depth.empty()) {
     frame.depth_m = read_depth(files.depth, recording_.depth_units_per_m);
     check_size(files.depth, *frame.depth_m, sizes_px_.front());
+    if (!std::exchange(is_depth_checked_, true)) {
+      const auto doubt = doubt_about_depth(*frame.depth_m, recording_.depth_units_per_m);
+      if (doubt) spdlog::warn("{}: {}", files.depth.string(), *doubt);
+    }
   }
   const auto& imu = recording_.imu;
   for (; next_imu_ < imu.size() && imu[next_imu_].stamp_s <= files.stamp_s; ++next_imu_) {

@@ -14,6 +14,7 @@ namespace samewhere::input {
 // Streams a recording: one frame is read per call of next(), nothing is kept. The first image of
 // each camera is read once more on construction: its size belongs to the camera. A frame carries
 // the inertial samples after the frame before it, up to its own stamp; the first all up to there.
+// Warns in the log where the first depth contradicts its units (depth_check.hpp).
 class FileSource : public core::Source {
  public:
   // Throws InputError if the camera file or a first image is broken, or if the calibration belongs
@@ -31,6 +32,7 @@ class FileSource : public core::Source {
   std::vector<cv::Size> sizes_px_;  // one per camera
   std::size_t next_index_ = 0;
   std::size_t next_imu_ = 0;
+  bool is_depth_checked_ = false;
 };
 
 }  // namespace samewhere::input

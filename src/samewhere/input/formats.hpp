@@ -10,38 +10,54 @@ namespace samewhere::input {
 
 // Each find_ answers: does this folder hold a recording of that format, and if so, what is in it?
 // Nothing if it does not. All text files are read and checked here, images are not. Throws
-// InputError naming the file (and line) that is missing or broken.
+// InputError naming the file (and line) that is missing or broken, if it is needed. What is not
+// needed is warned of: ground truth and inertial measurements, rows of them, and pictures that are
+// missing, unless more than half of all are. config.camera stands in for a calibration that cannot
+// be read; without config.needs_calibration none has to be there.
 
-// rgb.txt and depth.txt (lines `stamp filename`), groundtruth.txt, camera.txt. A colour image
-// without a depth image near in time has no depth. If that is so of all of them, InputError; if of
-// more than half, a warning in the log. Without config.depth, depth.txt is not looked at.
+// rgb.txt and depth.txt (lines `stamp filename`, or `stamp,filename`), groundtruth.txt, camera.txt.
+// Without depth.txt or rgb.txt, the pairs of associations.txt (list_file.hpp; also associate.txt,
+// assoc.txt). A colour image without a depth image near in time has no depth. If that is so of all
+// of them, InputError; if of more than half, a warning in the log. Without config.depth, depth.txt
+// is not looked at.
 std::optional<Recording> find_tum_rgbd(const std::filesystem::path& folder, const Config& config);
 
 // frame-000000.color.png (or .jpg), .depth.png, .pose.txt (world from camera, 4 x 4), camera.txt.
 std::optional<Recording> find_seven_scenes(const std::filesystem::path& folder,
                                            const Config& config);
 
-// images/, depth/ (same file names), K.txt, poses.txt (one world from camera a line, row by row).
+// images/, depth/ (depth_folder.hpp), K.txt, poses.txt (one world from camera a line, row by row).
 // This is how the HoloLens samples of DeepVideoMVS (Duzceker et al. 2021) are laid out.
 std::optional<Recording> find_hololens(const std::filesystem::path& folder, const Config& config);
 
 // mav0/cam0/data.csv and sensor.yaml, where they are also those of cam1, imu0 and
 // state_groundtruth_estimate0: the ASL format of Burri et al. 2016. `folder` may be mav0 itself.
-// One picture a frame and camera: those of cam1 belong to the nearest in time of cam0.
+// One picture a frame and camera: those of cam1 belong to the nearest in time of cam0, and those of
+// cam0 without one are left out.
 std::optional<Recording> find_euroc(const std::filesystem::path& folder, const Config& config);
 
-// image_0/ and image_1/ (grey) or else image_2/ and image_3/ (colour) with 000000.png and so on,
+// image_0/ and image_1/ (grey) or else image_2/ and image_3/ (colour) with 000000.png and so on (or
+// another format of pictures),
 // times.txt (one stamp a line), calib.txt (P0 to P3); poses.txt or ../../poses/NAME.txt (the first
 // three rows of world from camera 0 a line): an odometry sequence of Geiger et al. 2012. The right
 // camera may be missing.
 std::optional<Recording> find_kitti(const std::filesystem::path& folder, const Config& config);
 
-// *.jpg, *.jpeg, *.png in natural order, camera.txt. Stamps count by the last number of the names
-// if that rises from each to the next, else by position.
+// The pictures of the folder in their order (file_names.hpp) with the stamps that their names tell
+// (name_stamps.hpp), camera.txt.
 std::optional<Recording> find_images(const std::filesystem::path& folder, const Config& config);
 
-// A text file with the path of one image a line, relative to the list; further columns are ignored.
-// A list carries neither camera nor truth.
+// The same of a folder within: rgb/, color/, colour/, image/ or images/; with depth/ beside it, if
+// it is there (depth_folder.hpp), and camera.txt or K.txt.
+std::optional<Recording> find_picture_folders(const std::filesystem::path& folder,
+                                              const Config& config);
+
+// That, if there is a folder of depth images.
+std::optional<Recording> find_colour_and_depth(const std::filesystem::path& folder,
+                                               const Config& config);
+
+// A text file with the path of one image a line, relative to the list (list_file.hpp); further
+// columns are ignored. A list carries neither camera nor truth.
 Recording read_image_list(const std::filesystem::path& list, const Config& config);
 
 }  // namespace samewhere::input

@@ -45,21 +45,28 @@ TEST_F(HoloLens, TheFileNumberIsTheFrameNumberAt12Hz) {
 
 TEST_F(HoloLens, AMissingDepthImageIsNamed) {
   std::filesystem::remove(folder_.at("depth/00004.png"));
-  EXPECT_THAT(complaint_on_opening(), HasSubstr("depth/00004.png"));
+  EXPECT_THAT(said_on_opening(), AllOf(HasSubstr("1 of 3 depth images"), HasSubstr("00004.jpg")));
+  EXPECT_FALSE(read_all()[1].depth_m);
+  EXPECT_TRUE(read_all()[2].depth_m);
 }
 
-TEST_F(HoloLens, OnePoseTooManyOrTooFewIsAnError) {
+TEST_F(HoloLens, PosesTooManyOrTooFewAreWarnedOf) {
   folder_.write("poses.txt", poses(2));
-  EXPECT_THAT(complaint_on_opening(), HasSubstr("found 2 poses, expected 3"));
+  EXPECT_THAT(said_on_opening(), HasSubstr("found 2 poses, expected 3"));
+  EXPECT_EQ(open()->truth().trajectory.size(), 2U);
   folder_.write("poses.txt", poses(4));
-  EXPECT_THAT(complaint_on_opening(), HasSubstr("found 4 poses, expected 3"));
+  EXPECT_THAT(said_on_opening(), HasSubstr("found 4 poses, expected 3"));
+  EXPECT_EQ(open()->truth().trajectory.size(), 3U);
 }
 
-TEST_F(HoloLens, ABrokenPoseIsNamedWithItsLine) {
-  folder_.write("poses.txt", poses(2) + "1 0 0 inf 0 1 0 0 0 0 1 0 0 0 0 1\n");
-  EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr("poses.txt, line 3"), HasSubstr("'inf'")));
+TEST_F(HoloLens, ABrokenPoseIsLeftOutAndNamedWithItsLine) {
+  folder_.write("poses.txt", "1 0 0 inf 0 1 0 0 0 0 1 0 0 0 0 1\n" + poses(2));
+  EXPECT_THAT(said_on_opening(), AllOf(HasSubstr("poses.txt, line 1"), HasSubstr("'inf'")));
+  const core::Trajectory truth = open()->truth().trajectory;
+  ASSERT_EQ(truth.size(), 2U);
+  EXPECT_DOUBLE_EQ(truth[0].stamp_s, 4 / 12.0) << "the second line is that of the second frame";
   folder_.write("poses.txt", poses(2) + "1 0 0\n");
-  EXPECT_THAT(complaint_on_opening(), HasSubstr("found 3 values, expected 16"));
+  EXPECT_THAT(said_on_opening(), HasSubstr("found 3 values, expected 16"));
 }
 
 TEST_F(HoloLens, AnImageWithoutNumberIsNamed) {

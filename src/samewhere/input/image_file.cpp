@@ -1,19 +1,24 @@
 #include <bit>
+#include <cmath>
 #include <csetjmp>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
 #include <png.h>
 #include <turbojpeg.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/input/image_file.hpp>
+#include <samewhere/input/other_pictures.hpp>
+#include <samewhere/input/picture_size.hpp>
 
 namespace samewhere::input {
 namespace {
@@ -23,17 +28,6 @@ using std::filesystem::path;
 
 bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
-
-// A damaged header can claim any size; without a limit it would end in the allocator.
-void check_size(const path& file, std::int64_t width_px, std::int64_t height_px) {
-  constexpr std::int64_t kMaxPixels = 100'000'000;
-  if (width_px < 1 || height_px < 1) {
-    throw InputError(file.string() + ": damaged image file: it ends before the picture");
-  }
-  if (width_px <= kMaxPixels / height_px) return;
-  throw InputError(fmt::format("{}: is {} x {} pixels, expected at most {}", file.string(),
-                               width_px, height_px, kMaxPixels));
-}
 
 // ---- JPEG
 
@@ -50,6 +44,21 @@ bool is_harmless(tjhandle decoder) {
              std::string_view::npos;
 }
 
+// Cyan, magenta, yellow and black, each stored as 255 less the ink, as all programs write them.
+cv::Mat bgr_from_inks(const cv::Mat& inks) {
+  cv::Mat image(inks.size(), CV_8UC3);
+  for (int y = 0; y < inks.rows; ++y) {
+    for (int x = 0; x < inks.cols; ++x) {
+      const auto& paper = inks.at<cv::Vec4b>(y, x);
+      const auto shaded = [&paper](int ink) {
+        return static_cast<std::uint8_t>((paper[ink] * paper[3] + 127) / 255);
+      };
+      image.at<cv::Vec3b>(y, x) = {shaded(2), shaded(1), shaded(0)};
+    }
+  }
+  return image;
+}
+
 cv::Mat decode_jpeg(const path& file, std::string_view bytes) {
   const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), &tjDestroy);
   core::require(decoder != nullptr, "libjpeg-turbo gives a decoder");
@@ -63,16 +72,18 @@ cv::Mat decode_jpeg(const path& file, std::string_view bytes) {
       !is_harmless(decoder.get())) {
     fail_jpeg(file, decoder.get());
   }
-  check_size(file, width_px, height_px);
+  require_reasonable_size(file, width_px, height_px);
   const bool is_grey = colour_space == TJCS_GRAY;
-  cv::Mat image(height_px, width_px, is_grey ? CV_8UC1 : CV_8UC3);
+  const bool is_print = colour_space == TJCS_CMYK || colour_space == TJCS_YCCK;
+  cv::Mat image(height_px, width_px, is_grey ? CV_8UC1 : is_print ? CV_8UC4 : CV_8UC3);
+  const int format = is_grey ? TJPF_GRAY : is_print ? TJPF_CMYK : TJPF_BGR;
   if (tjDecompress2(decoder.get(), data, bytes.size(), image.data, width_px,
-                    static_cast<int>(image.step), height_px, is_grey ? TJPF_GRAY : TJPF_BGR,
-                    TJFLAG_ACCURATEDCT) != 0 &&
+                    static_cast<int>(image.step), height_px, format,
+                    TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0 &&
       !is_harmless(decoder.get())) {
     fail_jpeg(file, decoder.get());
   }
-  return image;
+  return is_print ? bgr_from_inks(image) : image;
 }
 
 // ---- PNG
@@ -89,6 +100,7 @@ class PngReader {
     core::require(png_ != nullptr, "libpng gives a decoder");
     info_ = png_create_info_struct(png_);
     png_set_read_fn(png_, this, &PngReader::read);
+    png_set_chunk_cache_max(png_, kMaxTextChunks);
   }
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
@@ -96,7 +108,8 @@ class PngReader {
 
   void read_header() {
     guarded([this] { png_read_info(png_, info_); });
-    check_size(file_, png_get_image_width(png_, info_), png_get_image_height(png_, info_));
+    require_reasonable_size(file_, png_get_image_width(png_, info_),
+                            png_get_image_height(png_, info_));
   }
 
   bool is_grey() const {
@@ -109,6 +122,7 @@ class PngReader {
     guarded([this] {
       png_set_palette_to_rgb(png_);
       png_set_expand_gray_1_2_4_to_8(png_);
+      png_set_scale_16(png_);
       png_set_strip_alpha(png_);
       png_set_bgr(png_);
     });
@@ -162,6 +176,9 @@ class PngReader {
     self->rest_.remove_prefix(num_bytes);
   }
 
+  // each may unpack to 8 MB, which libpng limits; cameras write a few
+  static constexpr png_uint_32 kMaxTextChunks = 16;
+
   const path& file_;
   std::string_view rest_;
   std::string message_;
@@ -172,36 +189,46 @@ class PngReader {
 cv::Mat decode_png(const path& file, std::string_view bytes) {
   PngReader reader(file, bytes);
   reader.read_header();
-  if (reader.bits_per_channel() > 8) {
-    throw InputError(fmt::format("{}: has {} bits per channel, expected an image with 8",
-                                 file.string(), reader.bits_per_channel()));
-  }
   return reader.read_bgr_or_grey();
 }
 
-}  // namespace
-
-cv::Mat read_image(const path& path) {
-  const std::string bytes = core::read_file(path);
-  if (is_jpeg(bytes)) return decode_jpeg(path, bytes);
-  if (is_png(bytes)) return decode_png(path, bytes);
-  throw InputError(path.string() + (bytes.empty() ? ": is empty" : ": is neither") +
-                   (bytes.empty() ? ", expected an image, JPEG or PNG"
-                                  : " JPEG nor PNG, the image formats that are read"));
-}
-
-cv::Mat read_depth(const path& path, double units_per_m) {
-  core::require(units_per_m > 0.0, "depth units per metre are positive");
-  const std::string bytes = core::read_file(path);
-  if (!is_png(bytes)) throw InputError(path.string() + ": is not PNG, expected a depth image");
-  PngReader reader(path, bytes);
+cv::Mat decode_depth_png(const path& file, std::string_view bytes) {
+  PngReader reader(file, bytes);
   reader.read_header();
   if (!reader.is_grey() || reader.has_alpha() || reader.bits_per_channel() != 16) {
     throw InputError(fmt::format("{}: has {} bits per channel{}, expected depth as 16-bit grey",
-                                 path.string(), reader.bits_per_channel(),
+                                 file.string(), reader.bits_per_channel(),
                                  reader.is_grey() ? "" : " and colour"));
   }
-  const cv::Mat stored = reader.read_16_bit_grey();
+  return reader.read_16_bit_grey();
+}
+
+// ---- other formats
+
+// Grey or blue, green, red, of 8 bits each; 16 are scaled.
+cv::Mat as_picture(const path& file, const cv::Mat& stored) {
+  constexpr double k8From16Bits = 1.0 / 257.0;
+  if (stored.depth() != CV_8U && stored.depth() != CV_16U) {
+    throw InputError(file.string() +
+                     ": holds floating-point values, expected a picture of 8 or 16 bits a channel");
+  }
+  cv::Mat image = stored;
+  if (stored.depth() == CV_16U) stored.convertTo(image, CV_8U, k8From16Bits);
+  if (image.channels() == 2) cv::extractChannel(image, image, 0);
+  if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);
+  return image;
+}
+
+cv::Mat decode_depth_other(const path& file, std::string_view bytes) {
+  cv::Mat stored = decode_other_picture(file, bytes);
+  if (stored.type() == CV_16UC1 || stored.type() == CV_32FC1) return stored;
+  throw InputError(
+      fmt::format("{}: has {} bits per channel and {} channels, expected depth as "
+                  "16-bit grey, or metres as 32-bit floats",
+                  file.string(), 8 * stored.elemSize1(), stored.channels()));
+}
+
+cv::Mat metres_from_units(const cv::Mat& stored, double units_per_m) {
   cv::Mat depth_m(stored.size(), CV_32FC1);
   for (int y = 0; y < stored.rows; ++y) {
     const auto* in = stored.ptr<std::uint16_t>(y);
@@ -212,6 +239,45 @@ cv::Mat read_depth(const path& path, double units_per_m) {
     }
   }
   return depth_m;
+}
+
+// What is no distance is unknown: NaN, infinite, negative.
+cv::Mat metres_from_floats(cv::Mat depth_m) {
+  for (int y = 0; y < depth_m.rows; ++y) {
+    for (int x = 0; x < depth_m.cols; ++x) {
+      float& value_m = depth_m.at<float>(y, x);
+      if (!std::isfinite(value_m) || value_m < 0.0F) value_m = 0.0F;
+    }
+  }
+  return depth_m;
+}
+
+}  // namespace
+
+bool is_picture(std::string_view bytes) {
+  return is_jpeg(bytes) || is_png(bytes) || is_other_picture(bytes);
+}
+
+cv::Mat read_image(const path& path) {
+  const std::string bytes = core::read_file(path, core::kPictureLimit);
+  if (is_jpeg(bytes)) return decode_jpeg(path, bytes);
+  if (is_png(bytes)) return decode_png(path, bytes);
+  if (is_other_picture(bytes)) return as_picture(path, decode_other_picture(path, bytes));
+  throw InputError(
+      path.string() +
+      (bytes.empty() ? ": is empty, expected an image, JPEG, PNG, BMP, PNM, TIFF or WebP"
+                     : ": is neither JPEG nor PNG, BMP, PNM, TIFF or WebP, the image formats that "
+                       "are read"));
+}
+
+cv::Mat read_depth(const path& path, double units_per_m) {
+  core::require(units_per_m > 0.0, "depth units per metre are positive");
+  const std::string bytes = core::read_file(path, core::kPictureLimit);
+  if (!is_png(bytes) && !is_other_picture(bytes))
+    throw InputError(path.string() + ": is not PNG, PGM or TIFF, expected a depth image");
+  cv::Mat stored = is_png(bytes) ? decode_depth_png(path, bytes) : decode_depth_other(path, bytes);
+  if (stored.type() == CV_32FC1) return metres_from_floats(std::move(stored));
+  return metres_from_units(stored, units_per_m);
 }
 
 }  // namespace samewhere::input

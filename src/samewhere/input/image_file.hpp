@@ -1,20 +1,26 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include <opencv2/core/mat.hpp>
 
 namespace samewhere::input {
 
-// The picture in a JPEG or PNG file (told by its content, not by its name): 8-bit BGR, or 8-bit
-// grey if it is stored so, rows x columns. An alpha channel is dropped. Pixels are given as they
-// are stored: a rotation noted in EXIF is not applied, because a calibration refers to the sensor.
-// Throws InputError naming the file if it cannot be read, is of another format, has 16 bits per
-// channel, is damaged or cut short.
+// Whether the first bytes of a file are those of a picture that read_image reads.
+bool is_picture(std::string_view bytes);
+
+// The picture in a JPEG, PNG, BMP, PNM, TIFF or WebP file (told by its content, not by its name):
+// 8-bit BGR, or 8-bit grey if it is stored so, rows x columns. An alpha channel is dropped, 16 bits
+// a channel are scaled to 8, inks (CMYK) become colours. Pixels are given as they are stored: a
+// rotation noted in EXIF is not applied (exif.hpp), because a calibration refers to the sensor.
+// Throws InputError naming the file if it cannot be read, is of another format, is damaged or cut
+// short.
 cv::Mat read_image(const std::filesystem::path& path);
 
-// The depth in a PNG file with 16-bit grey values: 32-bit float metres = value / units_per_m; 0 =
-// unknown, stored as 0 or 65535. Throws InputError as above.
+// The depth in a PNG, PGM or TIFF file with 16-bit grey values: 32-bit float metres = value /
+// units_per_m; 0 = unknown, stored as 0 or 65535. A TIFF of 32-bit floats is in metres. Throws
+// InputError as above.
 cv::Mat read_depth(const std::filesystem::path& path, double units_per_m);
 
 }  // namespace samewhere::input

@@ -1,9 +1,14 @@
+#include <map>
+
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/formats.hpp>
+#include <samewhere/input/left_out.hpp>
+#include <samewhere/input/numbered.hpp>
 #include <samewhere/input/truth_file.hpp>
 
 namespace samewhere::input {
@@ -23,37 +28,70 @@ std::vector<int> cameras_of(const path& folder) {
   return {};
 }
 
-path picture_path(const path& folder, int camera, std::size_t index) {
-  return folder / fmt::format("image_{}", camera) / fmt::format("{:06}.png", index);
+path camera_folder(const path& folder, int camera) {
+  return folder / fmt::format("image_{}", camera);
 }
 
-FrameFiles frame_files(const path& folder, const std::vector<int>& cameras, std::size_t index,
-                       const core::TextLine& line) {
-  FrameFiles files{fmt::format("{:06}.png", index),
-                   core::finite_numbers(line, 1, "the stamp of a frame, s").front()};
-  for (const int camera : cameras) {
-    files.images.push_back(picture_path(folder, camera, index));
-    if (is_there(files.images.back())) continue;
-    throw InputError(
-        fmt::format("{}: its image {} does not exist", line.place, files.images.back().string()));
+// The pictures of one camera by their numbers: 000000.png, or of another format or length.
+std::map<int, path> numbered_pictures(const path& folder) {
+  std::map<int, path> pictures;
+  for (const std::string& name : picture_names(folder)) {
+    if (const auto number = frame_number(name)) pictures.try_emplace(*number, folder / name);
   }
-  return files;
+  return pictures;
 }
 
-std::vector<FrameFiles> read_frames(const path& folder, const std::vector<int>& cameras) {
-  const path times = folder / "times.txt";
-  std::vector<FrameFiles> frames;
+struct Frames {
+  std::vector<FrameFiles> files;  // of those whose pictures are there
+  std::vector<double> stamps_s;   // of all, as times.txt has them
+  std::vector<bool> is_there;     // of all
+};
+
+std::vector<double> read_stamps(const path& times) {
+  std::vector<double> stamps_s;
   for (const core::TextLine& line : core::read_text_lines(times)) {
-    frames.push_back(frame_files(folder, cameras, frames.size(), line));
-    if (frames.size() < 2 || frames.back().stamp_s > frames.rbegin()[1].stamp_s) continue;
-    throw InputError(fmt::format("{}: found stamp {} after {}, expected stamps that rise",
-                                 line.place, frames.back().stamp_s, frames.rbegin()[1].stamp_s));
+    const double stamp_s = core::finite_numbers(line, 1, "the stamp of a frame, s").front();
+    if (!stamps_s.empty() && stamp_s <= stamps_s.back()) {
+      throw InputError(fmt::format("{}: found stamp {} after {}, expected stamps that rise",
+                                   line.place, stamp_s, stamps_s.back()));
+    }
+    stamps_s.push_back(stamp_s);
   }
-  if (frames.empty()) throw InputError(times.string() + ": holds no stamp");
-  if (const path surplus = picture_path(folder, cameras.front(), frames.size());
-      is_there(surplus)) {
-    throw InputError(fmt::format("{}: found {} stamps, expected one more, since {} exists",
-                                 times.string(), frames.size(), surplus.string()));
+  if (stamps_s.empty()) throw InputError(times.string() + ": holds no stamp");
+  return stamps_s;
+}
+
+Frames read_frames(const path& folder, const std::vector<int>& cameras) {
+  const path times = folder / "times.txt";
+  Frames frames{{}, read_stamps(times), {}};
+  std::vector<std::map<int, path>> pictures;
+  for (const int camera : cameras)
+    pictures.push_back(numbered_pictures(camera_folder(folder, camera)));
+  LeftOut left_out;
+  const auto num_stamps = static_cast<int>(frames.stamps_s.size());
+  for (int i = 0; i < num_stamps; ++i) {
+    FrameFiles files{fmt::format("{:06}.png", i), frames.stamps_s[static_cast<std::size_t>(i)]};
+    for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
+      const auto picture = pictures[camera].find(i);
+      if (picture == pictures[camera].end()) {
+        const path expected = camera_folder(folder, cameras[camera]) / files.name;
+        left_out.add(fmt::format("{}, stamp {}: its image {} does not exist", times.string(), i + 1,
+                                 expected.string()));
+        break;
+      }
+      files.images.push_back(picture->second);
+    }
+    frames.is_there.push_back(files.images.size() == cameras.size());
+    if (frames.is_there.back()) frames.files.push_back(std::move(files));
+  }
+  left_out.refuse_most(frames.stamps_s.size(), "frames");
+  left_out.warn(frames.stamps_s.size(), "frames");
+  const auto surplus = pictures.front().lower_bound(num_stamps);
+  if (surplus != pictures.front().end()) {
+    spdlog::warn(
+        "{}: found {} stamps, expected one for each picture, such as {}; the pictures "
+        "without a stamp are left out",
+        times.string(), num_stamps, surplus->second.string());
   }
   return frames;
 }
@@ -88,21 +126,17 @@ void add_camera(const path& file, int number, core::Rig& rig) {
 }
 
 // Poses are those of the left grey camera, `body` here; a trajectory is that of the rig's first.
-core::Trajectory read_poses(const path& file, const std::vector<FrameFiles>& frames,
+// The n-th belongs to the n-th stamp, whether its pictures are there or not.
+core::Trajectory read_poses(const path& file, const Frames& frames,
                             const core::Rigid3& body_from_camera) {
-  const std::vector<core::TextLine> lines = core::read_text_lines(file);
-  if (lines.size() != frames.size()) {
-    throw InputError(fmt::format("{}: found {} poses, expected {}, one per stamp of times.txt",
-                                 file.string(), lines.size(), frames.size()));
-  }
-  core::Trajectory trajectory;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
+  std::vector<FrameFiles> all;
+  for (const double stamp_s : frames.stamps_s) all.push_back({"", stamp_s});
+  return read_pose_lines(file, all, [&body_from_camera](const core::TextLine& line) {
     std::vector<double> rows =
-        core::finite_numbers(lines[i], 12, "the first three rows of a pose matrix");
+        core::finite_numbers(line, 12, "the first three rows of a pose matrix");
     rows.insert(rows.end(), {0.0, 0.0, 0.0, 1.0});
-    trajectory.push_back({frames[i].stamp_s, rigid_from_rows(lines[i], rows) * body_from_camera});
-  }
-  return trajectory;
+    return rigid_from_rows(line, rows) * body_from_camera;
+  });
 }
 
 // Poses lie apart from the pictures: sequences/00/ and poses/00.txt. Empty: there are none.
@@ -118,15 +152,19 @@ path poses_file(const path& folder) {
 
 }  // namespace
 
-std::optional<Recording> find_kitti(const path& folder, const Config& /*config*/) {
+std::optional<Recording> find_kitti(const path& folder, const Config& config) {
   const std::vector<int> cameras = cameras_of(folder);
   if (cameras.empty() || !is_there(folder / "times.txt")) return std::nullopt;
-  Recording recording{.format = "KITTI", .frames = read_frames(folder, cameras)};
-  for (const int camera : cameras) add_camera(folder / "calib.txt", camera, recording.rig);
+  Frames frames = read_frames(folder, cameras);
+  Recording recording{.format = "KITTI", .frames = std::move(frames.files)};
+  const bool has_rig = read_own_rig(config, recording, [&] {
+    for (const int camera : cameras) add_camera(folder / "calib.txt", camera, recording.rig);
+  });
   recording.truth = read_truth(folder, static_cast<int>(recording.frames.size()));
   if (const path poses = poses_file(folder); !poses.empty()) {
-    recording.truth.trajectory =
-        read_poses(poses, recording.frames, recording.rig.body_from_camera.front());
+    const core::Rigid3 body_from_camera =
+        has_rig ? recording.rig.body_from_camera.front() : core::Rigid3{};
+    recording.truth.trajectory = read_poses(poses, frames, body_from_camera);
   }
   return recording;
 }

@@ -38,7 +38,21 @@ class Kitti : public testing::Test {
   }
 
   std::filesystem::path sequence() const { return folder_.root() / "sequences/07"; }
-  std::unique_ptr<core::Source> open() const { return open_source(sequence(), {}); }
+  std::unique_ptr<core::Source> open() const { return open_source(sequence(), config_); }
+  // What the log says while the sequence is opened; "refused: ..." if it is.
+  std::string said_on_opening() const {
+    testing::internal::CaptureStdout();
+    const std::string error = complaint([this] { open(); });
+    const std::string log = testing::internal::GetCapturedStdout();
+    return error == "no error" ? log : "refused: " + error;
+  }
+  std::string said_with(const std::string& name, const std::string& content) const {
+    const std::string before = core::read_file(folder_.at(name));
+    folder_.write(name, content);
+    const std::string said = said_on_opening();
+    folder_.write(name, before);
+    return said;
+  }
   std::string complaint_with(const std::string& name, const std::string& content) const {
     const std::string before = core::read_file(folder_.at(name));
     folder_.write(name, content);
@@ -48,6 +62,7 @@ class Kitti : public testing::Test {
   }
 
   TestFolder folder_;
+  Config config_;
 };
 
 TEST_F(Kitti, TheGreyPairComesWithStampsAndCalibration) {
@@ -119,11 +134,43 @@ TEST_F(Kitti, OneCameraAloneIsEnough) {
   EXPECT_EQ(frame->rig->cameras.size(), 1U);
 }
 
-TEST_F(Kitti, AMissingFileIsNamed) {
+TEST_F(Kitti, AFrameWithoutOneOfItsPicturesIsLeftOut) {
   std::filesystem::remove(sequence() / "image_1/000001.png");
-  EXPECT_THAT(complaint([this] { open(); }),
-              AllOf(HasSubstr("times.txt, line 2"), HasSubstr("image_1/000001.png")));
-  std::filesystem::remove_all(sequence() / "image_1");
+  EXPECT_THAT(said_on_opening(), AllOf(HasSubstr("1 of 3 frames"), HasSubstr("times.txt, stamp 2"),
+                                       HasSubstr("image_1/000001.png")));
+  const auto source = open();
+  EXPECT_EQ(source->info().num_frames, 2);
+  source->next();
+  EXPECT_EQ(source->next()->stamp_s, 0.21);
+  ASSERT_EQ(source->truth().trajectory.size(), 3U);
+  EXPECT_EQ(source->truth().trajectory[2].world_from_camera.translation.x(), 1.0);
+}
+
+TEST_F(Kitti, PicturesMayHaveAnotherFormatOrLengthOfNumbers) {
+  for (int frame = 0; frame < 3; ++frame) {
+    std::filesystem::remove(sequence() / fmt::format("image_0/{:06}.png", frame));
+    folder_.write_jpeg(fmt::format("sequences/07/image_0/{:010}.JPG", frame),
+                       cv::Mat(24, 32, CV_8UC1, cv::Scalar(9)));
+  }
+  EXPECT_EQ(said_on_opening(), "");
+  EXPECT_EQ(open()->info().num_frames, 3);
+}
+
+TEST_F(Kitti, AGivenCameraReplacesACalibrationThatCannotBeRead) {
+  std::filesystem::remove(sequence() / "calib.txt");
+  EXPECT_THAT(said_on_opening(), HasSubstr("refused: "));
+  folder_.write("mine.txt", "30 0 15.5\n0 30 11.5\n0 0 1\n");
+  config_.camera = folder_.at("mine.txt").string();
+  EXPECT_THAT(said_on_opening(), HasSubstr("the second camera is not used"));
+  EXPECT_TRUE(open()->info().is_calibrated);
+  EXPECT_EQ(open()->info().num_cameras, 1);
+  config_ = {.needs_calibration = false};
+  EXPECT_THAT(said_on_opening(),
+              AllOf(HasSubstr("calib.txt"), HasSubstr("the calibration is not used")));
+  EXPECT_FALSE(open()->info().is_calibrated);
+}
+
+TEST_F(Kitti, AMissingCalibrationIsNamed) {
   std::filesystem::remove(sequence() / "calib.txt");
   EXPECT_THAT(complaint([this] { open(); }),
               AllOf(HasSubstr("calib.txt"), HasSubstr("No such file")));
@@ -133,9 +180,14 @@ TEST_F(Kitti, StampsAndPicturesAreCountedAgainstEachOther) {
   const auto said = [this](const std::string& text) {
     return complaint_with("sequences/07/times.txt", text);
   };
-  EXPECT_THAT(said("0\n1\n"),
+  const auto warned = [this](const std::string& text) {
+    return said_with("sequences/07/times.txt", text);
+  };
+  EXPECT_THAT(warned("0\n1\n"),
               AllOf(HasSubstr("times.txt: found 2 stamps"), HasSubstr("image_0/000002.png")));
-  EXPECT_THAT(said("0\n1\n2\n3\n"), AllOf(HasSubstr("times.txt, line 4"), HasSubstr("000003.png")));
+  EXPECT_THAT(warned("0\n1\n2\n3\n"),
+              AllOf(HasSubstr("times.txt, stamp 4"), HasSubstr("000003.png")));
+  EXPECT_THAT(warned("0\n1\n2\n3\n4\n5\n6\n"), HasSubstr("refused: "));
   EXPECT_THAT(said(""), HasSubstr("holds no stamp"));
   EXPECT_THAT(said("0\n2\n1\n"), AllOf(HasSubstr("line 3"), HasSubstr("stamp 1 after 2")));
   EXPECT_THAT(said("0\nx\n1\n"), AllOf(HasSubstr("line 2"), HasSubstr("'x'")));
@@ -157,10 +209,8 @@ TEST_F(Kitti, ABrokenCalibrationIsNamedWithItsLine) {
               AllOf(HasSubstr("image_0/000000.png: wrong calibration"), HasSubstr("(155, 11.25)")));
 }
 
-TEST_F(Kitti, BrokenPosesAreNamedWithTheirLine) {
-  const auto said = [this](const std::string& text) {
-    return complaint_with("poses/07.txt", text);
-  };
+TEST_F(Kitti, BrokenPosesAreLeftOutAndNamedWithTheirLine) {
+  const auto said = [this](const std::string& text) { return said_with("poses/07.txt", text); };
   const std::string good = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   EXPECT_THAT(said(good + good), AllOf(HasSubstr("07.txt: found 2 poses, expected 3")));
   EXPECT_THAT(said(good + good + "1 0 0 0\n"), AllOf(HasSubstr("line 3"), HasSubstr("4 values")));

@@ -1,13 +1,17 @@
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/file_source.hpp>
 #include <samewhere/input/formats.hpp>
+#include <samewhere/input/image_file.hpp>
 #include <samewhere/input/open.hpp>
 #include <samewhere/input/video.hpp>
 
@@ -38,27 +42,47 @@ void check_config(const Config& config) {
     throw InputError(fmt::format("{}: holds several sequences, expected one, such as {}",
                                  folder.string(), (folder / name).string()));
   }
-  throw InputError(folder.string() +
-                   ": holds no known recording; looked for rgb.txt (TUM RGB-D), mav0/ (EuRoC), "
-                   "image_0/ or image_2/ with times.txt (KITTI), frame-*.color.png or .jpg "
-                   "(7-Scenes), images/ with depth/, K.txt or poses.txt "
-                   "(HoloLens), *.jpg, *.jpeg or *.png (images)");
+  throw InputError(
+      folder.string() +
+      ": holds no known recording; looked for rgb.txt (TUM RGB-D), mav0/ (EuRoC), "
+      "image_0/ or image_2/ with times.txt (KITTI), frame-*.color.png or .jpg "
+      "(7-Scenes), images/ with depth/, K.txt or poses.txt "
+      "(HoloLens), rgb/ or color/ with depth/, *.jpg, *.jpeg, *.png or other pictures");
 }
 
 Recording read_folder(const path& folder, const Config& config) {
-  for (const auto& find : {&find_tum_rgbd, &find_euroc, &find_kitti, &find_seven_scenes,
-                           &find_hololens, &find_images}) {
+  for (const auto& find :
+       {&find_tum_rgbd, &find_euroc, &find_kitti, &find_seven_scenes, &find_hololens,
+        &find_colour_and_depth, &find_images, &find_picture_folders}) {
     if (std::optional<Recording> recording = find(folder, config)) return *std::move(recording);
   }
   fail_unknown(folder);
 }
 
+std::string beginning_of(const path& file) {
+  constexpr std::size_t kNumBytes = 4096;
+  return core::read_beginning(file, kNumBytes);
+}
+
+// Text has no control characters but white space. (UTF-16 has zeros; core::read_text refuses it.)
+bool is_text(std::string_view bytes) {
+  const auto is_control = [](char c) {
+    return (c >= 0 && c < ' ' && !(c >= '\t' && c <= '\r')) || c == '\x7f';
+  };
+  return std::none_of(bytes.begin(), bytes.end(), is_control);
+}
+
+bool is_wide_text(std::string_view bytes) {
+  return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+}
+
 Recording read_list(const path& list, const Config& config) {
-  if (core::read_file(list).find('\0') != std::string::npos) {
-    throw InputError(
-        list.string() +
-        ": is a binary file, expected a folder, a text file with the path of one image a "
-        "line, or a video (.mp4, .avi, ...)");
+  const std::string bytes = beginning_of(list);
+  if (!is_text(bytes) && !is_wide_text(bytes)) {
+    throw InputError(list.string() +
+                     (is_picture(bytes) ? ": is one picture" : ": is a binary file") +
+                     ", expected a folder, a text file with the path of one image a line, or a "
+                     "video (.mp4, .avi, ...)");
   }
   return read_image_list(list, config);
 }
@@ -87,16 +111,28 @@ Recording read_recording(const path& source, const Config& config) {
   require_there(source);
   Recording recording = is_folder(source) ? read_folder(source, config) : read_list(source, config);
   if (!config.camera.empty()) recording.camera_file = config.camera;
-  if (config.depth_factor > 0.0) recording.depth_units_per_m = config.depth_factor;
+  recording.needs_calibration = config.needs_calibration || !config.camera.empty();
+  if (config.depth_factor > 0.0) {
+    recording.depth_units_per_m = config.depth_factor;
+  } else if (const auto told = depth_units_per_m_of(recording.camera_file)) {
+    recording.depth_units_per_m = *told;
+  }
   if (!config.depth) {
     for (FrameFiles& files : recording.frames) files.depth.clear();
   }
   return recording;
 }
 
+bool is_video(const path& source) {
+  if (!is_there(source) || is_folder(source)) return false;
+  if (is_camera_device(source) || is_video_name(source.string())) return true;
+  const std::string bytes = beginning_of(source);
+  return !is_text(bytes) && !is_wide_text(bytes) && !is_picture(bytes);
+}
+
 std::unique_ptr<core::Source> open_source(const path& source, const Config& config) {
   require_there(source);
-  if (is_camera_device(source) || (is_video_name(source.string()) && !is_folder(source))) {
+  if (is_video(source)) {
     check_config(config);
     return open_video(source, config);
   }

@@ -10,11 +10,15 @@
 namespace samewhere::input {
 
 // The recording at `source`: a folder, whose format is told by what is in it (formats.hpp), a text
-// file that lists images, a video by its name, or a camera's device (video.hpp). Frames are read
+// file that lists images, a video by its name or because it is neither text nor a picture, or a
+// camera's device (video.hpp). Frames are read
 // one at a time, when asked for. Throws InputError if there is nothing known there, or if anything
 // that text files say is missing or broken; a bad image is reported by next().
 std::unique_ptr<core::Source> open_source(const std::filesystem::path& source,
                                           const Config& config);
+
+// Whether open_source takes what is there for a video or a camera.
+bool is_video(const std::filesystem::path& source);
 
 // Where the pictures of a folder or list lie, for whoever reads them in another way. Throws
 // InputError as above.

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <samewhere/input/test_recording.hpp>
 
@@ -17,6 +18,12 @@ TEST_F(Open, AMissingFolderIsNamed) {
 TEST_F(Open, APathTooLongForTheSystemIsAnErrorNotACrash) {
   EXPECT_THAT(complaint([&] { open_source(std::string(5000, 'x'), config_); }),
               HasSubstr("does not exist"));
+}
+
+TEST_F(Open, APipeIsRefusedWithoutWaiting) {
+  const std::filesystem::path pipe = folder_.at("list.txt");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(complaint([&] { open_source(pipe, config_); }), HasSubstr("is a pipe"));
 }
 
 TEST_F(Open, AnEmptyFolderIsNamed) {

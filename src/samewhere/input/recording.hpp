@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <samewhere/core/frame.hpp>
 #include <samewhere/core/rig.hpp>
 #include <samewhere/core/truth.hpp>
+#include <samewhere/input/config.hpp>
 
 namespace samewhere::input {
 
@@ -27,8 +29,17 @@ struct Recording {
   // pictures.
   core::Rig rig = {};
   std::filesystem::path camera_file = {};  // if not empty, it says what camera 0 is
-  std::vector<core::ImuSample> imu = {};   // stamps rise
+  bool needs_calibration = true;  // else a calibration that does not fit is warned of and left out
+  std::vector<core::ImuSample> imu = {};  // stamps rise
   core::Truth truth = {};
 };
+
+// Leaves out all cameras but the first, as where it is not known how they sit to each other.
+void keep_first_camera(Recording& recording);
+
+// Calls `read`, which fills in recording.rig. Where that throws InputError although another
+// calibration was given (input.camera) or none is needed, the rig is empty afterwards, one camera
+// is kept, and false is returned; where none was given the log has a warning.
+bool read_own_rig(const Config& config, Recording& recording, const std::function<void()>& read);
 
 }  // namespace samewhere::input

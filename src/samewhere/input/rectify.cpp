@@ -2,14 +2,18 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/geometry/camera.hpp>
+#include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/rectify.hpp>
+#include <samewhere/input/straighten.hpp>
 
 namespace samewhere::input {
 namespace {
@@ -18,7 +22,19 @@ using core::InputError;
 using core::PinholeRadtan;
 
 const PinholeRadtan& pinhole(const core::Rig& rig, std::size_t i) {
-  return std::get<PinholeRadtan>(rig.cameras[i]);
+  return geometry::pinhole(rig.cameras[i]);
+}
+
+// The rig with ideal pinholes in place of cameras that have no distortion of Brown.
+core::Rig with_pinholes(core::Rig rig) {
+  for (core::Camera& camera : rig.cameras) {
+    if (!geometry::is_brown(camera)) camera = ideal_pinhole(camera);
+  }
+  return rig;
+}
+
+bool are_all_brown(const core::Rig& rig) {
+  return std::all_of(rig.cameras.begin(), rig.cameras.end(), &geometry::is_brown);
 }
 
 cv::Matx33d matrix_of(const PinholeRadtan& c) {
@@ -26,18 +42,6 @@ cv::Matx33d matrix_of(const PinholeRadtan& c) {
 }
 
 cv::Vec<double, 5> distortion_of(const PinholeRadtan& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
-
-// Where each pixel of a rectified picture is in the picture as it was taken.
-struct Map {
-  cv::Mat x_px;
-  cv::Mat y_px;
-
-  cv::Mat apply(const cv::Mat& taken, int interpolation) const {
-    cv::Mat turned;
-    cv::remap(taken, turned, x_px, y_px, interpolation, cv::BORDER_CONSTANT);
-    return turned;
-  }
-};
 
 // A rectified pair, before its maps.
 struct Layout {
@@ -69,6 +73,11 @@ Layout layout_of(const core::Rig& rig) {
     throw InputError(fmt::format(
         "rectification: the two cameras are {} m apart, expected two places at least {} m apart",
         cv::norm(translation), kMinBaseline_m));
+  }
+  if (!(cv::norm(translation) <= geometry::kMaxBaseline_m)) {
+    throw InputError(
+        fmt::format("rectification: the two cameras are {:.4g} m apart, expected at most {} m",
+                    cv::norm(translation), geometry::kMaxBaseline_m));
   }
   Layout layout;
   cv::Matx34d left_projection;
@@ -104,10 +113,12 @@ void require_usable(const Layout& layout) {
   }
 }
 
-Map map_of(const PinholeRadtan& taken, const PinholeRadtan& turned,
-           const cv::Matx33d& turned_from_taken) {
-  Map map;
-  cv::initUndistortRectifyMap(matrix_of(taken), distortion_of(taken), turned_from_taken,
+PixelMap map_of(const core::Camera& taken, const PinholeRadtan& turned,
+                const cv::Matx33d& turned_from_taken) {
+  if (!geometry::is_brown(taken)) return pixel_map(taken, turned, turned_from_taken);
+  const PinholeRadtan& model = geometry::pinhole(taken);
+  PixelMap map;
+  cv::initUndistortRectifyMap(matrix_of(model), distortion_of(model), turned_from_taken,
                               matrix_of(turned), {turned.width_px, turned.height_px}, CV_32FC1,
                               map.x_px, map.y_px);
   return map;
@@ -139,7 +150,7 @@ cv::Mat depth_factors(const Layout& layout) {
 // What turns the frames of one rig.
 class Rectification {
  public:
-  explicit Rectification(const core::Rig& taken) : layout_(layout_of(taken)) {
+  explicit Rectification(const core::Rig& taken) : layout_(layout_of(with_pinholes(taken))) {
     require_usable(layout_);
     core::Rig rig = taken;
     rig.cameras = {layout_.camera, layout_.camera};
@@ -150,7 +161,7 @@ class Rectification {
     rig.body_from_camera[1] = rig.body_from_camera[0] * left_from_right;
     rig_ = std::make_shared<const core::Rig>(rig);
     for (std::size_t i = 0; i < maps_.size(); ++i) {
-      maps_[i] = map_of(pinhole(taken, i), layout_.camera, layout_.turned_from_taken[i]);
+      maps_[i] = map_of(taken.cameras[i], layout_.camera, layout_.turned_from_taken[i]);
     }
   }
 
@@ -170,8 +181,39 @@ class Rectification {
  private:
   Layout layout_;
   std::shared_ptr<const core::Rig> rig_;
-  std::array<Map, 2> maps_;
+  std::array<PixelMap, 2> maps_;
   cv::Mat depth_factors_;
+};
+
+// What turns the pictures of a rig, where one of its cameras is a fisheye or has a rational lens,
+// into those of ideal pinholes that look the same way.
+class Straightening {
+ public:
+  explicit Straightening(const core::Rig& taken) {
+    core::Rig rig = with_pinholes(taken);
+    for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+      maps_.push_back(geometry::is_brown(taken.cameras[i])
+                          ? PixelMap{}
+                          : pixel_map(taken.cameras[i], pinhole(rig, i), cv::Matx33d::eye()));
+    }
+    rig_ = std::make_shared<const core::Rig>(std::move(rig));
+  }
+
+  core::Frame apply(core::Frame frame) const {
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      if (maps_[i].x_px.empty()) continue;
+      frame.images[i] = maps_[i].apply(frame.images[i], cv::INTER_LINEAR);
+      // along the optical axis, which stays; between two surfaces there is none to interpolate
+      if (i == 0 && frame.depth_m)
+        frame.depth_m = maps_[i].apply(*frame.depth_m, cv::INTER_NEAREST);
+    }
+    frame.rig = rig_;
+    return frame;
+  }
+
+ private:
+  std::shared_ptr<const core::Rig> rig_;
+  std::vector<PixelMap> maps_;  // empty: the picture stays as it is
 };
 
 class RectifiedSource : public core::Source {
@@ -185,16 +227,25 @@ class RectifiedSource : public core::Source {
   std::optional<core::Frame> next() override {
     std::optional<core::Frame> frame = source_->next();
     if (!frame) return frame;
-    if (frame->id.index() == 0 && frame->rig->cameras.size() == 2 &&
-        !core::is_rectified_pair(*frame->rig)) {
-      rectification_.emplace(*frame->rig);
-    }
-    return rectification_ ? rectification_->apply(*std::move(frame)) : frame;
+    if (frame->id.index() == 0) prepare_for(*frame->rig);
+    if (rectification_) return rectification_->apply(*std::move(frame));
+    return straightening_ ? straightening_->apply(*std::move(frame)) : frame;
   }
 
  private:
+  void prepare_for(const core::Rig& rig) {
+    const bool is_straight = are_all_brown(rig);
+    if (rig.cameras.size() == 2 && !(is_straight && core::is_rectified_pair(rig))) {
+      rectification_.emplace(rig);
+    } else if (!is_straight) {
+      straightening_.emplace(rig);
+    }
+  }
+
   std::unique_ptr<core::Source> source_;
-  std::optional<Rectification> rectification_;  // all frames have the rig of the first
+  // all frames have the rig of the first
+  std::optional<Rectification> rectification_;
+  std::optional<Straightening> straightening_;
 };
 
 }  // namespace

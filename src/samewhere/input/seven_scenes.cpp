@@ -7,6 +7,7 @@
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/formats.hpp>
+#include <samewhere/input/left_out.hpp>
 #include <samewhere/input/numbered.hpp>
 #include <samewhere/input/truth_file.hpp>
 
@@ -50,9 +51,15 @@ core::Trajectory read_poses(const std::vector<FrameFiles>& frames) {
   };
   if (std::none_of(frames.begin(), frames.end(), has_pose)) return {};
   core::Trajectory trajectory;
+  LeftOut left_out;
   for (const FrameFiles& frame : frames) {
-    trajectory.push_back({frame.stamp_s, read_pose(sibling(frame, ".pose.txt"))});
+    try {
+      trajectory.push_back({frame.stamp_s, read_pose(sibling(frame, ".pose.txt"))});
+    } catch (const InputError& error) {
+      left_out.add(error.what());
+    }
   }
+  left_out.warn(frames.size(), "poses of the ground truth");
   return trajectory;
 }
 
@@ -67,8 +74,9 @@ std::optional<Recording> find_seven_scenes(const path& folder, const Config& con
   stamp_by_number(recording.frames, config.fps > 0.0 ? config.fps : kSevenScenesFps);
   std::vector<path> depths;
   for (const FrameFiles& frame : recording.frames) depths.push_back(sibling(frame, ".depth.png"));
-  // a sequence may come without depth, but one with holes is damaged
-  if (std::any_of(depths.begin(), depths.end(), &is_there)) attach_depth(recording.frames, depths);
+  // a sequence may come without depth
+  if (config.depth && std::any_of(depths.begin(), depths.end(), &is_there))
+    attach_depth(recording.frames, depths);
   if (is_there(folder / "camera.txt")) recording.camera_file = folder / "camera.txt";
   recording.truth = read_truth(folder, static_cast<int>(recording.frames.size()));
   core::Trajectory poses = read_poses(recording.frames);

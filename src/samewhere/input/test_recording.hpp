@@ -36,6 +36,14 @@ class Open : public testing::Test {
     });
   }
 
+  // What the log says while the recording is opened; "refused: ..." if it is.
+  std::string said_on_opening() {
+    testing::internal::CaptureStdout();
+    const std::string error = complaint_on_opening();
+    const std::string log = testing::internal::GetCapturedStdout();
+    return error == "no error" ? log : "refused: " + error;
+  }
+
   void write_image(const std::string& name, int width_px = 32) const {
     folder_.write_jpeg(name, picture(width_px, 24));
   }

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -39,7 +41,11 @@ int header_number(std::istream& in, const path& file) {
 }
 
 PlaceTruthMatrix read_pgm(const path& file, int num_frames) {
-  std::istringstream in(core::read_file(file));
+  constexpr std::uint64_t kMaxHeader = 1000;
+  const std::uint64_t num_pairs = std::uint64_t(num_frames) * std::uint64_t(num_frames);
+  const core::SizeLimit limit{std::max(num_pairs + kMaxHeader, core::kTextLimit.num_bytes),
+                              "a matrix of frames"};
+  std::istringstream in(core::read_file(file, limit));
   if (in.get() != 'P' || in.get() != '5') {
     throw InputError(file.string() + ": is not a binary PGM file (P5)");
   }
@@ -114,18 +120,71 @@ std::vector<core::FramePair> read_impostors(const path& file, int num_frames) {
 
 }  // namespace
 
-core::Truth read_truth(const path& folder, int num_frames) {
-  core::Truth truth;
-  if (is_there(folder / "groundtruth.tum")) {
-    truth.trajectory = core::read_tum(folder / "groundtruth.tum");
+bool read_if_sound(const char* consequence, const std::function<void()>& read) {
+  try {
+    read();
+    return true;
+  } catch (const InputError& error) {
+    spdlog::warn("{}; {}", error.what(), consequence);
+    return false;
   }
-  if (is_there(folder / "same_place.pgm")) {
-    truth.places = read_pgm(folder / "same_place.pgm", num_frames);
+}
+
+core::Trajectory in_order(core::Trajectory poses, const std::vector<std::string>& places,
+                          LeftOut& left_out) {
+  std::vector<std::size_t> order(poses.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&poses](std::size_t a, std::size_t b) {
+    return poses[a].stamp_s < poses[b].stamp_s;
+  });
+  core::Trajectory sorted;
+  for (const std::size_t i : order) {
+    if (sorted.empty() || poses[i].stamp_s > sorted.back().stamp_s) {
+      sorted.push_back(poses[i]);
+    } else {
+      left_out.add(fmt::format("{}: found stamp {:.6f} a second time, expected it once", places[i],
+                               poses[i].stamp_s));
+    }
+  }
+  return sorted;
+}
+
+core::Trajectory read_true_trajectory(const path& file) {
+  core::Trajectory trajectory;
+  read_if_sound("the run goes on without this ground truth", [&] {
+    std::vector<core::TextLine> lines = core::read_text_lines(file);
+    core::drop_column_names(lines);
+    core::Trajectory poses;
+    std::vector<std::string> places;
+    LeftOut left_out;
+    for (const core::TextLine& line : lines) {
+      try {
+        poses.push_back(core::tum_pose(line));
+        places.push_back(line.place);
+      } catch (const InputError& error) {
+        left_out.add(error.what());
+      }
+    }
+    trajectory = in_order(std::move(poses), places, left_out);
+    left_out.warn(lines.size(), "poses of the ground truth");
+  });
+  return trajectory;
+}
+
+core::Truth read_truth(const path& folder, int num_frames) {
+  constexpr const char* kWithout = "the run goes on without it";
+  core::Truth truth;
+  if (is_there(folder / "groundtruth.tum"))
+    truth.trajectory = read_true_trajectory(folder / "groundtruth.tum");
+  if (is_there(folder / kSamePlaceTable)) {
+    read_if_sound(kWithout, [&] { truth.places = read_pgm(folder / kSamePlaceTable, num_frames); });
   } else if (is_there(folder / "same_place.txt")) {
-    truth.places = read_text_matrix(folder / "same_place.txt", num_frames);
+    read_if_sound(kWithout,
+                  [&] { truth.places = read_text_matrix(folder / "same_place.txt", num_frames); });
   }
   if (is_there(folder / "impostors.csv")) {
-    truth.impostors = read_impostors(folder / "impostors.csv", num_frames);
+    read_if_sound(kWithout,
+                  [&] { truth.impostors = read_impostors(folder / "impostors.csv", num_frames); });
   }
   return truth;
 }

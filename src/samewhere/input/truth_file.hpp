@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/core/truth.hpp>
+#include <samewhere/input/left_out.hpp>
 
 namespace samewhere::input {
 
@@ -12,8 +15,23 @@ namespace samewhere::input {
 // groundtruth.tum; which frames show the same place in same_place.pgm (binary PGM) or, without it,
 // same_place.txt (one row of numbers per query), both with 1 = same, 2 = near, 0 = different;
 // which pairs are impostors in impostors.csv (a line of names, then query,match,...).
-// Throws InputError if a file is broken or the matrix is not num_frames x num_frames.
+// What is broken is warned of in the log and left out: rows of a trajectory, a matrix that is not
+// num_frames x num_frames, a file that cannot be read. Truth is not needed for a run.
 core::Truth read_truth(const std::filesystem::path& folder, int num_frames);
+
+// The trajectory in a file of the TUM format (core/tum_file.hpp) or the like. Rows that cannot be
+// read (nan where motion capture lost the body), and rows whose stamp an earlier row has, are left
+// out, counted and warned of; rows out of order are sorted. Never throws for what is in the file.
+core::Trajectory read_true_trajectory(const std::filesystem::path& file);
+
+// Puts poses in the order of their stamps and leaves out those whose stamp an earlier one has.
+// `places` are the lines they come from, for messages.
+core::Trajectory in_order(core::Trajectory poses, const std::vector<std::string>& places,
+                          LeftOut& left_out);
+
+// Calls `read`; what it throws as InputError is warned of, with what follows from it ("is not
+// used"), and false returned.
+bool read_if_sound(const char* consequence, const std::function<void()>& read);
 
 // A pose from the four rows of its matrix world_from_camera, 16 numbers. Throws InputError naming
 // `line` if the matrix is no rigid transform.

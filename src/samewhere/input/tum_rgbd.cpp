@@ -6,11 +6,11 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/text_file.hpp>
-#include <samewhere/core/tum_file.hpp>
 #include <samewhere/input/associate.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/formats.hpp>
+#include <samewhere/input/left_out.hpp>
+#include <samewhere/input/list_file.hpp>
 #include <samewhere/input/truth_file.hpp>
 
 namespace samewhere::input {
@@ -21,38 +21,13 @@ using std::filesystem::path;
 
 constexpr double kDepthUnitsPerM = 5000.0;
 
-struct StampedName {
-  std::string place;  // of its line, for messages
-  double stamp_s = 0.0;
-  std::string name;
-};
-
-// rgb.txt or depth.txt.
-std::vector<StampedName> read_stamped_names(const path& list) {
-  std::vector<StampedName> names;
-  for (const core::TextLine& line : core::read_text_lines(list)) {
-    if (line.words.size() < 2) {
-      throw InputError(line.place + ": found one word, expected 'stamp filename'");
-    }
-    const double stamp_s = core::finite_number(line, 0);
-    if (!names.empty() && stamp_s <= names.back().stamp_s) {
-      throw InputError(fmt::format("{}: found stamp {:.6f} after {:.6f}, expected stamps that rise",
-                                   line.place, stamp_s, names.back().stamp_s));
-    }
-    names.push_back({line.place, stamp_s, line.words[1]});
-  }
-  return names;
+std::string missing(const StampedFile& listed, const char* kind) {
+  return fmt::format("{}: the {} image {} does not exist", listed.place, kind, listed.file.name);
 }
 
-path existing(const path& folder, const StampedName& file, const char* kind) {
-  path image = folder / file.name;
-  if (is_there(image)) return image;
-  throw InputError(fmt::format("{}: the {} image {} does not exist", file.place, kind, file.name));
-}
-
-std::vector<double> stamps_of(const std::vector<StampedName>& files) {
+std::vector<double> stamps_of(const std::vector<StampedFile>& files) {
   std::vector<double> stamps_s;
-  for (const StampedName& file : files) stamps_s.push_back(file.stamp_s);
+  for (const StampedFile& file : files) stamps_s.push_back(file.stamp_s);
   return stamps_s;
 }
 
@@ -86,42 +61,100 @@ double smallest_difference_s(const std::vector<double>& a_s, const std::vector<d
 // together, and a run without scale is not what somebody with a depth camera expects.
 void attach_depth(const path& folder, double max_difference_s, std::vector<FrameFiles>& frames) {
   const path list = folder / "depth.txt";
-  const std::vector<StampedName> depths = read_stamped_names(list);
+  const std::vector<StampedFile> depths = read_stamped_files(list);
   std::vector<double> stamps_s;
   for (const FrameFiles& frame : frames) stamps_s.push_back(frame.stamp_s);
   const auto partners = associate(stamps_s, stamps_of(depths), max_difference_s);
-  std::size_t num_found = 0;
+  LeftOut left_out;
+  std::size_t num_partners = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!partners[i]) continue;
-    frames[i].depth = existing(folder, depths[*partners[i]], "depth");
-    ++num_found;
+    ++num_partners;
+    const StampedFile& depth = depths[*partners[i]];
+    if (depth.file.is_there) {
+      frames[i].depth = depth.file.path;
+    } else {
+      left_out.add(missing(depth, "depth"));
+    }
   }
-  if (num_found == 0) fail_without_partners(list, stamps_s, stamps_of(depths), max_difference_s);
-  if (2 * num_found < frames.size()) {
+  if (num_partners == 0) fail_without_partners(list, stamps_s, stamps_of(depths), max_difference_s);
+  left_out.refuse_most(num_partners, "depth images");
+  left_out.warn(num_partners, "depth images");
+  if (2 * num_partners < frames.size()) {
     spdlog::warn("{}: only {} of {} pictures have a depth image within {} s", list.string(),
-                 num_found, frames.size(), max_difference_s);
+                 num_partners, frames.size(), max_difference_s);
   }
+}
+
+std::vector<FrameFiles> read_colour(const path& list) {
+  const std::vector<StampedFile> listed = read_stamped_files(list);
+  if (listed.empty()) throw InputError(list.string() + ": lists no image");
+  std::vector<FrameFiles> frames;
+  LeftOut left_out;
+  for (const StampedFile& colour : listed) {
+    if (colour.file.is_there) {
+      frames.push_back({colour.file.name, colour.stamp_s, {colour.file.path}});
+    } else {
+      left_out.add(missing(colour, "colour"));
+    }
+  }
+  left_out.refuse_most(listed.size(), "colour images");
+  left_out.warn(listed.size(), "colour images");
+  return frames;
+}
+
+// Pairs as associate.py writes them: a frame without its depth image has none.
+std::vector<FrameFiles> read_pairs(const path& list, bool with_depth) {
+  const std::vector<StampedPair> pairs = read_associations(list);
+  if (pairs.empty()) throw InputError(list.string() + ": lists no image");
+  std::vector<FrameFiles> frames;
+  LeftOut left_out;
+  for (const auto& [colour, depth] : pairs) {
+    if (!colour.file.is_there) {
+      left_out.add(missing(colour, "colour"));
+      continue;
+    }
+    frames.push_back({colour.file.name, colour.stamp_s, {colour.file.path}});
+    if (!with_depth) continue;
+    if (depth.file.is_there) {
+      frames.back().depth = depth.file.path;
+    } else {
+      left_out.add(missing(depth, "depth"));
+    }
+  }
+  left_out.refuse_most(pairs.size(), "pairs of images");
+  left_out.warn(pairs.size(), "pairs of images, or the depth of them,");
+  return frames;
+}
+
+// The list of pairs of a folder; empty: there is none.
+path associations_of(const path& folder) {
+  for (const char* name :
+       {"associations.txt", "associate.txt", "assoc.txt", "association.txt", "associated.txt"}) {
+    if (is_there(folder / name)) return folder / name;
+  }
+  return {};
 }
 
 }  // namespace
 
 std::optional<Recording> find_tum_rgbd(const path& folder, const Config& config) {
-  if (!is_there(folder / "rgb.txt")) return std::nullopt;
+  const bool has_colour = is_there(folder / "rgb.txt");
+  const bool has_depth = is_there(folder / "depth.txt");
+  const path pairs = has_colour && has_depth ? path() : associations_of(folder);
+  if (!has_colour && pairs.empty()) return std::nullopt;
   Recording recording{.format = "TUM RGB-D", .depth_units_per_m = kDepthUnitsPerM};
-  for (const StampedName& file : read_stamped_names(folder / "rgb.txt")) {
-    recording.frames.push_back({file.name, file.stamp_s, {existing(folder, file, "colour")}});
-  }
-  if (recording.frames.empty()) {
-    throw InputError((folder / "rgb.txt").string() + ": lists no image");
-  }
-  if (config.depth && is_there(folder / "depth.txt")) {
-    attach_depth(folder, config.max_stamp_difference_s, recording.frames);
+  if (!pairs.empty()) {
+    recording.frames = read_pairs(pairs, config.depth);
+  } else {
+    recording.frames = read_colour(folder / "rgb.txt");
+    if (config.depth && has_depth)
+      attach_depth(folder, config.max_stamp_difference_s, recording.frames);
   }
   if (is_there(folder / "camera.txt")) recording.camera_file = folder / "camera.txt";
   recording.truth = read_truth(folder, static_cast<int>(recording.frames.size()));
-  if (is_there(folder / "groundtruth.txt")) {
-    recording.truth.trajectory = core::read_tum(folder / "groundtruth.txt");
-  }
+  if (is_there(folder / "groundtruth.txt"))
+    recording.truth.trajectory = read_true_trajectory(folder / "groundtruth.txt");
   return recording;
 }
 

@@ -45,6 +45,13 @@ TEST_F(TumRgbd, TheDepthFactorCanBeSet) {
   EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 2.5F);
 }
 
+TEST_F(TumRgbd, TheCameraFileMaySayTheDepthFactorAndASettingOverrulesIt) {
+  folder_.write("camera.txt", std::string(kCamera) + "depth_factor 250\n");
+  EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 10.0F);
+  config_.depth_factor = 1000.0;
+  EXPECT_FLOAT_EQ(read_all()[0].depth_m->at<float>(0, 0), 2.5F);
+}
+
 TEST_F(TumRgbd, DepthCanBeLeftOut) {
   config_.depth = false;
   EXPECT_FALSE(open()->info().has_depth);
@@ -90,16 +97,68 @@ TEST_F(TumRgbd, ColourAloneIsEnough) {
   EXPECT_EQ(read_all().size(), 3U);
 }
 
-TEST_F(TumRgbd, AMissingDepthImageIsNamed) {
+TEST_F(TumRgbd, AMissingImageIsLeftOutAndNamedUnlessMostAre) {
   std::filesystem::remove(folder_.at("depth/2.png"));
-  EXPECT_THAT(complaint_on_opening(),
-              AllOf(HasSubstr("depth.txt, line 3"), HasSubstr("depth/2.png does not exist")));
+  EXPECT_THAT(said_on_opening(),
+              AllOf(HasSubstr("1 of 2 depth images are left out"), HasSubstr("depth.txt, line 3"),
+                    HasSubstr("depth/2.png does not exist")));
+  EXPECT_FALSE(read_all()[2].depth_m);
+  std::filesystem::remove(folder_.at("rgb/3.jpg"));
+  EXPECT_THAT(said_on_opening(),
+              AllOf(HasSubstr("1 of 3 colour images are left out"), HasSubstr("rgb.txt, line 5"),
+                    HasSubstr("rgb/3.jpg does not exist")));
+  EXPECT_EQ(read_all().size(), 2U);
+  std::filesystem::remove(folder_.at("rgb/2.jpg"));
+  EXPECT_THAT(said_on_opening(), AllOf(HasSubstr("refused: "), HasSubstr("rgb.txt, line 4"),
+                                       HasSubstr("2 of 3 colour images")));
 }
 
-TEST_F(TumRgbd, AMissingColourImageIsNamed) {
-  std::filesystem::remove(folder_.at("rgb/3.jpg"));
-  EXPECT_THAT(complaint_on_opening(),
-              AllOf(HasSubstr("rgb.txt, line 5"), HasSubstr("rgb/3.jpg does not exist")));
+TEST_F(TumRgbd, ListsMayBeWrittenByOtherEditors) {
+  const std::string list = "100 rgb/1.jpg\n100.033 rgb/2.jpg\n100.066 rgb/3.jpg\n";
+  const auto with = [&list](const std::string& end) {
+    std::string text;
+    for (const char c : list) text += c == '\n' ? end : std::string(1, c);
+    return text;
+  };
+  for (const std::string& text :
+       {"\xef\xbb\xbf" + list, with("\r\n"), with("\r"), "\xef\xbb\xbf#\r\n" + with("\r\n"),
+        std::string("timestamp filename\n100,rgb/1.jpg\n+100.033, rgb/2.jpg\n100.066\trgb/3.jpg\n"),
+        std::string("100 rgb\\1.jpg\n100.033 \"rgb/2.jpg\"\n100.066 rgb/3.jpg extra\n")}) {
+    folder_.write("rgb.txt", text);
+    EXPECT_EQ(said_on_opening(), "") << text;
+    EXPECT_EQ(read_all().size(), 3U) << text;
+  }
+}
+
+TEST_F(TumRgbd, NamesMayHoldBlanks) {
+  write_image("rgb images/my 1.jpg");
+  for (const char* line : {"100 rgb images/my 1.jpg\n", "100 \"rgb images/my 1.jpg\"\n",
+                           "100 'rgb images/my 1.jpg' floor\n", "100 rgb images/my 1.jpg 17\n"}) {
+    folder_.write("rgb.txt", line);
+    const std::vector<core::Frame> frames = read_all();
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].name, "rgb images/my 1.jpg") << line;
+  }
+  folder_.write("rgb.txt", "100 rgb images/gone 1.jpg\n");
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("image rgb images/gone 1.jpg does not exist"));
+}
+
+TEST_F(TumRgbd, PairsOfAListOfAssociationsAreTaken) {
+  std::filesystem::remove(folder_.at("rgb.txt"));
+  std::filesystem::remove(folder_.at("depth.txt"));
+  for (const char* text :
+       {"100 rgb/1.jpg 100.001 depth/1.png\n100.1 rgb/3.jpg 100.09 depth/2.png\n",
+        "100 depth/1.png 100 rgb/1.jpg\n100.1 depth/2.png 100.1 rgb/3.jpg\n"}) {
+    folder_.write("associations.txt", text);
+    const std::vector<core::Frame> frames = read_all();
+    ASSERT_EQ(frames.size(), 2U);
+    EXPECT_EQ(frames[1].name, "rgb/3.jpg");
+    EXPECT_DOUBLE_EQ(frames[1].stamp_s, 100.1);
+    ASSERT_TRUE(frames[1].depth_m);
+    EXPECT_FLOAT_EQ(frames[1].depth_m->at<float>(5, 5), 0.5F);
+  }
+  folder_.write("associations.txt", "100 rgb/1.jpg\n");
+  EXPECT_THAT(complaint_on_opening(), HasSubstr("expected 'stamp filename stamp filename'"));
 }
 
 TEST_F(TumRgbd, StampsGoingBackwardsAreNamedWithLineAndBothStamps) {
@@ -119,9 +178,30 @@ TEST_F(TumRgbd, BrokenListsAreNamed) {
   EXPECT_THAT(complaint_on_opening(), HasSubstr("lists no image"));
 }
 
-TEST_F(TumRgbd, BrokenTruthIsNamedOnOpening) {
-  folder_.write("groundtruth.txt", "# truth\n99.9 1 2 nan 0 0 0 1\n");
-  EXPECT_THAT(complaint_on_opening(), HasSubstr("groundtruth.txt, line 2"));
+TEST_F(TumRgbd, RowsOfTheTruthThatCannotBeReadAreLeftOut) {
+  const std::string good = "100 1 2 3 0 0 0 1\n101 1 2 4 0 0 0 1\n";
+  for (const char* bad : {"99.9 1 2 nan 0 0 0 1\n", "100 1 2 9 0 0 0 1\n", "102 1 2 3\n",
+                          "102 1 2 3 0 0 0 0\n", "lost at 17:03\n"}) {
+    folder_.write("groundtruth.txt", good + bad);
+    EXPECT_THAT(said_on_opening(), AllOf(HasSubstr("1 of 3 poses of the ground truth are left out"),
+                                         HasSubstr("groundtruth.txt, line 3")))
+        << bad;
+    const core::Trajectory truth = open()->truth().trajectory;
+    ASSERT_EQ(truth.size(), 2U) << bad;
+    EXPECT_EQ(truth[0].world_from_camera.translation.z(), 3.0) << bad;
+  }
+}
+
+TEST_F(TumRgbd, TruthMayHaveAHeaderCommasOrAnotherOrder) {
+  for (const char* text : {"timestamp tx ty tz qx qy qz qw\n100 1 2 3 0 0 0 1\n101 1 2 4 0 0 0 1\n",
+                           "100,1,2,3,0,0,0,1\n101, 1, 2, 4, 0, 0, 0, 1\n",
+                           "101 1 2 4 0 0 0 1\n100 1 2 3 0 0 0 1\n"}) {
+    folder_.write("groundtruth.txt", text);
+    EXPECT_EQ(said_on_opening(), "") << text;
+    const core::Trajectory truth = open()->truth().trajectory;
+    ASSERT_EQ(truth.size(), 2U) << text;
+    EXPECT_EQ(truth[0].world_from_camera.translation.z(), 3.0);
+  }
 }
 
 TEST_F(TumRgbd, DepthOfAnotherSizeThanTheColourIsNamed) {

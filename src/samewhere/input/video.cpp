@@ -3,12 +3,14 @@
 #include <cctype>
 #include <string>
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/input/camera_file.hpp>
+#include <samewhere/input/file_names.hpp>
+#include <samewhere/input/truth_file.hpp>
 #include <samewhere/input/video.hpp>
 #include <samewhere/input/video_decoder.hpp>
 
@@ -20,25 +22,6 @@ using std::filesystem::path;
 
 constexpr double kUnknownFps = 30.0;  // of a file or camera that does not say
 
-// Never unloaded: FFmpeg leaves things behind that run at exit.
-OpenVideo* load(const path& plugin) {
-  void* const library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* const function = library == nullptr ? nullptr : dlsym(library, kOpenVideoSymbol);
-  if (function != nullptr) return reinterpret_cast<OpenVideo*>(function);
-  const char* const reason = dlerror();
-  throw InputError(fmt::format(
-      "{}: the plugin that reads videos and cameras cannot be loaded ({}); `./run build` makes it",
-      plugin.string(), reason == nullptr ? "no reason given" : reason));
-}
-
-std::unique_ptr<VideoDecoder> open_decoder(const path& video, bool is_camera, const path& plugin) {
-  std::unique_ptr<VideoDecoder> decoder(load(plugin)(video.c_str(), is_camera));
-  if (decoder != nullptr) return decoder;
-  throw InputError(video.string() + (is_camera ? ": cannot be opened as a camera; is it one, and "
-                                                 "does no other program use it?"
-                                               : ": cannot be read as a video"));
-}
-
 // A video as its container tells it.
 struct Claim {
   int num_frames = 0;  // 0: it does not say
@@ -49,7 +32,7 @@ struct Claim {
 // exact. MP4 and AVI list every picture, those too that an edit list hides or that were dropped;
 // Matroska tells a length only, of the longest track, which times a nominal rate is too many where
 // the rate varied. So a video is cut short if pictures and time are missing: two pictures or 5 % of
-// it, at most a second, is usual. If the time was filled, nobody knows, and that is only told.
+// it, at most a second, is usual. Of such a video is used what was there.
 void check_end(const path& video, const Claim& claim, std::uint64_t num_read, double lasted_s) {
   constexpr double kUsualRatio = 0.05;
   constexpr double kMaxUsual_s = 1.0;
@@ -60,14 +43,41 @@ void check_end(const path& video, const Claim& claim, std::uint64_t num_read, do
   const double usual_s =
       std::max(std::min(kUsualRatio * claimed_s, kMaxUsual_s), kUsualFrames / claim.rate_hz);
   if (lasted_s < claimed_s - usual_s) {
-    throw InputError(fmt::format(
+    spdlog::warn(
         "{}: ends after {} pictures ({:.1f} s), expected {} ({:.1f} s) as the file says: it is cut "
         "short or damaged",
-        video.string(), num_read, lasted_s, claim.num_frames, claimed_s));
+        video.string(), num_read, lasted_s, claim.num_frames, claimed_s);
+    return;
   }
   if (num_missing <= kUsualRatio * claim.num_frames) return;
   spdlog::warn("{}: has {} of the {} pictures it claims: its rate varies, or it is damaged",
                video.string(), num_read, claim.num_frames);
+}
+
+// The camera of a video: that of input.camera, or of the file beside it, or none.
+core::Rig rig_of(const path& video, const Config& config, const cv::Size& size_px) {
+  core::Rig rig;
+  if (!config.camera.empty()) {
+    rig.cameras = {read_camera_file_for(config.camera, size_px, video)};
+  } else if (const path beside = camera_file_beside(video); !beside.empty()) {
+    const auto read = [&] {
+      rig.cameras = {read_camera_file_for(beside, size_px, video)};
+      spdlog::info("{}: taken for the camera of {}; --camera FILE names another", beside.string(),
+                   video.filename().string());
+    };
+    read_if_sound("this camera file beside the video is not used", read);
+  }
+  if (!rig.cameras.empty()) rig.body_from_camera = {core::Rigid3{}};
+  return rig;
+}
+
+void warn_of_rotation(const path& video, int rotation_degrees) {
+  if (rotation_degrees == 0) return;
+  // whether a quarter is one to the left or to the right, decoders do not agree
+  spdlog::warn(
+      "{}: notes that a player turns it by {}; its pictures are used as they are stored, and the "
+      "calibration has to be of such pictures",
+      video.string(), rotation_degrees == 180 ? "180 degrees" : "90 degrees to a side");
 }
 
 class VideoSource : public core::Source {
@@ -79,13 +89,9 @@ class VideoSource : public core::Source {
         waiting_(decoder_->next()) {
     if (waiting_.image.empty()) throw InputError(video.string() + ": gives no picture");
     size_px_ = waiting_.image.size();
-    core::Rig rig;
-    if (!config.camera.empty()) {
-      rig.cameras = {read_camera_file_for(config.camera, size_px_, video)};
-      rig.body_from_camera = {core::Rigid3{}};
-    }
-    rig_ = std::make_shared<const core::Rig>(rig);
     const bool is_live = is_camera_device(video);
+    if (!is_live) warn_of_rotation(video, decoder_->rotation_degrees());
+    rig_ = std::make_shared<const core::Rig>(rig_of(video, config, size_px_));
     if (decoder_->frame_rate_hz() > 0.0) claim_.rate_hz = decoder_->frame_rate_hz();
     if (!is_live) claim_.num_frames = std::max(decoder_->num_frames(), 0);
     info_ = {.name = video.stem().string(),
@@ -149,8 +155,9 @@ bool is_video_name(std::string_view name) {
   std::string extension = path(name).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array kExtensions = {".mp4", ".avi",  ".mkv",  ".mov", ".m4v",
-                                      ".mpg", ".mpeg", ".webm", ".ogv"};
+  constexpr std::array kExtensions = {".mp4",  ".avi",  ".mkv", ".mov", ".m4v", ".mpg",
+                                      ".mpeg", ".webm", ".ogv", ".wmv", ".flv", ".mjpeg",
+                                      ".mjpg", ".y4m",  ".ts",  ".mts", ".3gp", ".h264"};
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
@@ -159,8 +166,14 @@ bool is_camera_device(const path& path) {
   return std::filesystem::is_character_file(path, error);
 }
 
-path video_plugin_path() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "samewhere-video.so";
+path camera_file_beside(const path& video) {
+  if (is_camera_device(video)) return {};
+  for (const path& file :
+       {path(video.string() + ".camera.txt"), path(video).replace_extension(".camera.txt"),
+        video.parent_path() / "camera.txt"}) {
+    if (is_there(file)) return file;
+  }
+  return {};
 }
 
 std::unique_ptr<core::Source> open_video(const path& video, const Config& config,

@@ -6,6 +6,7 @@
 
 #include <samewhere/core/source.hpp>
 #include <samewhere/input/config.hpp>
+#include <samewhere/input/video_plugin.hpp>
 
 namespace samewhere::input {
 
@@ -15,17 +16,21 @@ bool is_video_name(std::string_view name);
 // Whether there is a device such as /dev/video0 at that path.
 bool is_camera_device(const std::filesystem::path& path);
 
-// Where the plugin lies that reads videos: beside the running program.
-std::filesystem::path video_plugin_path();
+// The camera file beside a video: NAME.camera.txt, with or without the ending of the video, or
+// camera.txt in its folder. Empty: there is none.
+std::filesystem::path camera_file_beside(const std::filesystem::path& video);
 
 // A video file (is_video), or a camera (is_live). Frames are pictures of one camera; input.camera
 // calibrates it. Stamps are those of the file or the driver, or position / input.fps where that is
 // given; one that does not rise is one frame after the last. A video is not turned as a telephone
 // would show it: the calibration belongs to the sensor. info().num_frames is what the file claims,
-// 0 if it does not say. After its last picture next() throws InputError if the file ends clearly
-// before what it claims: it is cut or damaged. Pictures that are missing though the file lasts as
-// long as it claims are warned of in the log. Neither can be told of a file that claims nothing, or
-// whose claim is read off its last bytes (MPEG, Ogg).
+// 0 if it does not say. A file that ends clearly before what it claims is cut or damaged: that, and
+// pictures that are missing though the file lasts as long as it claims, is warned of in the log
+// after its last picture. Neither can be told of a file that claims nothing, or whose claim is read
+// off its last bytes (MPEG, Ogg). Of a rotation that the file notes the log says that it is not
+// applied.
+// Without input.camera the camera file beside a video is used, if it is there and belongs to
+// pictures of its size, and the log says so: NAME.camera.txt or camera.txt.
 //
 // Throws InputError if the plugin is not there, if `path` is no video or the camera cannot be
 // opened, or if it gives no picture; and as FileSource does for the camera file.

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstddef>
+
 #include <opencv2/core/mat.hpp>
 
 namespace samewhere::input {
 
-// What lies between the program and the plugin that reads videos (apps/samewhere-video): the plugin
-// alone links OpenCV's videoio, which brings FFmpeg and 57 MB along.
+// What lies between the program and the plugin that reads videos and rarer formats of pictures
+// (apps/samewhere-video): the plugin alone links OpenCV's videoio and imgcodecs, which bring
+// FFmpeg, GDAL and 57 MB along.
 
 struct VideoPicture {
   cv::Mat image;  // 8-bit BGR, rows x columns; empty: there are no more
@@ -22,11 +25,17 @@ class VideoDecoder {
 
   virtual double frame_rate_hz() const = 0;  // as the file or camera says; 0: it does not
   virtual int num_frames() const = 0;        // as the file says, which may be wrong; 0: it does not
+  // By how much a player turns the pictures, as the file says, 0, 90, 180 or 270; next() does not.
+  virtual int rotation_degrees() const = 0;
   virtual VideoPicture next() = 0;
 };
 
-// The only function of the plugin: a file, or a camera's device. Nothing if it cannot be read.
+// A function of the plugin: a file, or a camera's device. Nothing if it cannot be read.
 using OpenVideo = VideoDecoder*(const char* path, bool is_camera);
 inline constexpr const char* kOpenVideoSymbol = "samewhere_open_video";
+
+// The other: the picture in the bytes of a file, as it is stored. False if there is none.
+using DecodePicture = bool(const unsigned char* bytes, std::size_t num_bytes, cv::Mat& image);
+inline constexpr const char* kDecodePictureSymbol = "samewhere_decode_picture";
 
 }  // namespace samewhere::input

@@ -38,6 +38,13 @@ class Video : public testing::Test {
     });
   }
 
+  // What the log says while the video is read.
+  std::string said_on_reading(const std::string& name) {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(complaint_on_reading(name), "no error");
+    return testing::internal::GetCapturedStdout();
+  }
+
   // Sixty noisy pictures, 6 s.
   void write_long(const std::string& name, int writer_kind = cv::CAP_OPENCV_MJPEG,
                   int codec = cv::VideoWriter::fourcc('M', 'J', 'P', 'G')) const {
@@ -110,7 +117,7 @@ TEST_F(Video, WhatIsNoVideoIsNamed) {
   EXPECT_THAT(complaint_about(folder_.at("empty.avi")), HasSubstr("cannot be read as a video"));
   EXPECT_THAT(complaint_about(folder_.at("gone.mp4")), HasSubstr("gone.mp4: does not exist"));
   folder_.write("walk.mp5", std::string("\0\1\2", 3));
-  EXPECT_THAT(complaint_about(folder_.at("walk.mp5")), HasSubstr("a video (.mp4"));
+  EXPECT_THAT(complaint_about(folder_.at("walk.mp5")), HasSubstr("cannot be read as a video"));
 }
 
 TEST_F(Video, DamagedVideosNeverCrash) {
@@ -123,28 +130,28 @@ TEST_F(Video, DamagedVideosNeverCrash) {
   }
 }
 
-TEST_F(Video, OneThatIsCutShortIsRefusedAtItsEndWithBothCounts) {
+TEST_F(Video, OfOneThatIsCutShortIsUsedWhatIsThere) {
   write_long("long.avi");
-  EXPECT_EQ(complaint_on_reading("long.avi"), "no error");
+  EXPECT_EQ(said_on_reading("long.avi"), "");
   for (const double kept_ratio : {0.9, 0.5, 0.2}) {
     write_long("long.avi");
     folder_.cut("long.avi", kept_ratio);
-    EXPECT_THAT(complaint_on_reading("long.avi"),
+    EXPECT_THAT(said_on_reading("long.avi"),
                 AllOf(HasSubstr("long.avi: ends after "), HasSubstr("expected 60 (6.0 s)")))
         << kept_ratio;
   }
   // whatever the stamps are said to be
   config_.fps = 1.0;
-  EXPECT_THAT(complaint_on_reading("long.avi"), HasSubstr("expected 60 (6.0 s)"));
+  EXPECT_THAT(said_on_reading("long.avi"), HasSubstr("expected 60 (6.0 s)"));
 }
 
-TEST_F(Video, OneWithAHoleIsRefused) {
+TEST_F(Video, OneWithAHoleIsWarnedOf) {
   write_long("long.avi");
   std::string bytes = core::read_file(folder_.at("long.avi"));
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.size() / 4,
               '\0');
   folder_.write("long.avi", bytes);
-  EXPECT_THAT(complaint_on_reading("long.avi"), HasSubstr("cut short or damaged"));
+  EXPECT_THAT(said_on_reading("long.avi"), HasSubstr("cut short or damaged"));
 }
 
 // Matroska has a length and no count: pictures may be missing because their rate varied.
@@ -162,7 +169,7 @@ TEST_F(Video, OneThatLastsAsLongAsItClaimsWithFewerPicturesIsWarnedOf) {
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               AllOf(HasSubstr("hole.mkv: has "), HasSubstr(" of the 60 pictures it claims")));
   folder_.write("cut.mkv", bytes.substr(0, bytes.size() / 2));
-  EXPECT_THAT(complaint_on_reading("cut.mkv"), HasSubstr("expected 60 (6.0 s)"));
+  EXPECT_THAT(said_on_reading("cut.mkv"), HasSubstr("expected 60 (6.0 s)"));
 }
 
 TEST_F(Video, ACountThatIsTwoPicturesOffIsUsual) {
@@ -172,9 +179,50 @@ TEST_F(Video, ACountThatIsTwoPicturesOffIsUsual) {
     set_number(bytes, 48, num_claimed);
     set_number(bytes, bytes.find("strh") + 8 + 32, num_claimed);
     folder_.write("off.avi", bytes);
-    EXPECT_EQ(complaint_on_reading("off.avi") == "no error", num_claimed != kNumFrames + 3)
-        << num_claimed;
+    EXPECT_EQ(said_on_reading("off.avi").empty(), num_claimed != kNumFrames + 3) << num_claimed;
   }
+}
+
+TEST_F(Video, IsToldByItsContentToo) {
+  std::filesystem::copy_file(video(), folder_.at("walk.bin"));
+  EXPECT_EQ(open_source(folder_.at("walk.bin"), config_)->info().format, "video");
+  EXPECT_TRUE(is_video(folder_.at("walk.bin")));
+  folder_.write("list.bin", "1.png\n");
+  EXPECT_FALSE(is_video(folder_.at("list.bin")));
+  EXPECT_FALSE(is_video(folder_.root()));
+}
+
+TEST_F(Video, TheCameraFileBesideItIsUsedAndSaid) {
+  const auto said = [this] {
+    testing::internal::CaptureStdout();
+    const bool is_calibrated = open_source(video(), config_)->info().is_calibrated;
+    return std::string(is_calibrated ? "used: " : "not used: ") +
+           testing::internal::GetCapturedStdout();
+  };
+  EXPECT_EQ(said(), "not used: ");
+  folder_.write("camera.txt", "60 0 31.5\n0 60 23.5\n0 0 1\n");
+  EXPECT_THAT(said(), AllOf(HasSubstr("used: "), HasSubstr("camera.txt: taken for the camera of")));
+  folder_.write("camera.txt", "60 0 315\n0 60 23.5\n0 0 1\n");
+  EXPECT_THAT(said(), AllOf(HasSubstr("not used: "), HasSubstr("wrong calibration")));
+  for (const char* name : {"walk.camera.txt", "walk.avi.camera.txt"}) {
+    folder_.write(name, "61 0 31.5\n0 60 23.5\n0 0 1\n");
+    EXPECT_THAT(said(), AllOf(HasSubstr("used: "), HasSubstr(name))) << name;
+  }
+}
+
+// The matrix of a track in an MP4 file turns it: here by 90 degrees.
+TEST_F(Video, ARotationIsSaidAndNotApplied) {
+  write_long("turned.mp4", cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'));
+  EXPECT_EQ(said_on_reading("turned.mp4"), "");
+  std::string bytes = core::read_file(folder_.at("turned.mp4"));
+  const std::size_t matrix = bytes.find("tkhd") + 4 + 40;
+  const std::string quarter_turn("\0\0\0\0\0\1\0\0\0\0\0\0\xff\xff\0\0\0\0\0\0", 20);
+  bytes.replace(matrix, quarter_turn.size(), quarter_turn);
+  folder_.write("turned.mp4", bytes);
+  EXPECT_THAT(said_on_reading("turned.mp4"),
+              AllOf(HasSubstr("turned.mp4"), HasSubstr("turns it by 90 degrees")));
+  EXPECT_EQ(open_source(folder_.at("turned.mp4"), config_)->next()->images[0].size(),
+            cv::Size(64, 48));
 }
 
 TEST_F(Video, AMissingCameraOrOneThatIsNoneIsNamed) {

@@ -139,6 +139,11 @@ scene::Edit moved_keyframes(const MapVersion& map, const Problem& problem,
 
 }  // namespace
 
+optimize::BundleProblem bundle_problem(const MapVersion& map, const BundleWindow& window,
+                                       const features::Config& config) {
+  return problem_of(map, window, config).bundle;
+}
+
 BundleWindow window_around(const MapVersion& map, KeyframeId keyframe, const Config& config) {
   return window_of(map, free_keyframes(map, keyframe, config), config);
 }

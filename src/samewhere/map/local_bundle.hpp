@@ -35,6 +35,10 @@ struct BundleSettings {
   optimize::Config optimize;
 };
 
+// The problem of a window: its free keyframes, then its fixed ones, and its landmarks.
+optimize::BundleProblem bundle_problem(const scene::MapVersion& map, const BundleWindow& window,
+                                       const features::Config& config);
+
 // The edit that moves the keyframe, its neighbours and what they see to where all their
 // observations fit best, and takes out the observations that do not. Odometry edges stay as they
 // were measured; where the bundle found a keyframe relative to its odometry parent is in the

@@ -205,7 +205,7 @@ std::filesystem::path find_network(const std::string& setting, const std::string
 }
 
 NetworkFile read_network(const std::filesystem::path& path) {
-  return parse_network(path, core::read_file(path));
+  return parse_network(path, core::read_file(path, core::kNetworkLimit));
 }
 
 NetworkFile parse_network(const std::filesystem::path& path, std::string bytes) {

@@ -19,8 +19,7 @@ struct NetworkFile {
   cv::Size input_px;
 };
 
-// The file that a setting names: itself, relative to the working directory; failing that, in the
-// folder models/ of the source that this program was built from. Throws InputError naming the
+// The file that a setting names, as core::find_model() finds it. Throws InputError naming the
 // setting and both places if it is in neither.
 std::filesystem::path find_network(const std::string& setting, const std::string& file);
 

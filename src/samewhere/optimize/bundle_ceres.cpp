@@ -7,9 +7,6 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr std::size_t kPoseSize = 7;
-constexpr std::size_t kPointSize = 3;
-
 // Size 2 without depth, 3 with.
 template <int Size>
 class ReprojectionCost : public ceres::SizedCostFunction<Size, kPoseSize, kPointSize> {

@@ -264,10 +264,12 @@ PoseGraphSummary EdgeProblem::solve(int max_iterations) {
     blocks_[i] = to_block(graph_.world_from_node[i]);
   }
   graph_.log_scales = log_scales_;
-  return {summary.initial_cost,
-          summary.final_cost,
-          std::max(0, static_cast<int>(summary.iterations.size()) - 1),
-          {}};
+  PoseGraphSummary done;
+  done.initial_cost = summary.initial_cost;
+  done.final_cost = summary.final_cost;
+  done.num_iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  done.has_converged = summary.termination_type == ceres::CONVERGENCE;
+  return done;
 }
 
 }  // namespace samewhere::optimize

@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,6 +52,15 @@ core::Matrix6d g2o_information(const PoseEdge& edge) {
   return matrix.transpose() * edge.information * matrix;
 }
 
+double g2o_chi2_of(const PoseGraph& graph, const PoseEdge& edge) {
+  if (graph.is_planar) return chi2_of(graph, edge);
+  core::Vector6d error = edge_error(edge, graph.world_from_node[static_cast<std::size_t>(edge.a)],
+                                    graph.world_from_node[static_cast<std::size_t>(edge.b)]);
+  const double angle = error.tail<3>().norm();
+  if (angle > 1e-9) error.tail<3>() *= 2.0 * std::sin(0.5 * angle) / angle;
+  return error.dot(edge.information * error);
+}
+
 std::vector<bool> nodes_with_edges(const PoseGraph& graph) {
   std::vector<bool> is_named(graph.world_from_node.size(), false);
   for (const PoseEdge& edge : graph.edges) {
@@ -59,6 +72,30 @@ std::vector<bool> nodes_with_edges(const PoseGraph& graph) {
   }
   return is_named;
 }
+
+namespace {
+
+using Ends = std::pair<int, int>;  // nodes of an edge, the lower first
+
+// Between which a reader would take a loop for odometry: neighbours among the nodes that are
+// written, without odometry.
+std::set<Ends> loops_between_neighbours(const PoseGraph& graph, const std::vector<bool>& is_named) {
+  std::vector<int> rank;
+  int num_before = 0;
+  for (const bool is_one : is_named) rank.push_back(is_one ? num_before++ : num_before);
+  std::set<Ends> found;
+  for (const PoseEdge& edge : graph.edges) {
+    const Ends ends = std::minmax(edge.a, edge.b);
+    const int apart =
+        rank[static_cast<std::size_t>(ends.second)] - rank[static_cast<std::size_t>(ends.first)];
+    if (edge.is_loop && apart == 1) found.insert(ends);
+  }
+  for (const PoseEdge& edge : graph.edges)
+    if (!edge.is_loop) found.erase(std::minmax(edge.a, edge.b));
+  return found;
+}
+
+}  // namespace
 
 std::string g2o_text(const PoseGraph& graph, const std::vector<long>& names) {
   core::require(names.empty() || names.size() == graph.world_from_node.size(),
@@ -77,6 +114,8 @@ std::string g2o_text(const PoseGraph& graph, const std::vector<long>& names) {
   for (const int node : held_nodes(graph)) {
     if (is_named[static_cast<std::size_t>(node)]) text += fmt::format("FIX {}\n", name(node));
   }
+  for (const auto& [a, b] : loops_between_neighbours(graph, is_named))
+    text += fmt::format("{} {} {}\n", kG2oLoop, name(a), name(b));
   for (const PoseEdge& edge : graph.edges) {
     if (!edge.is_loop && std::abs(name(edge.a) - name(edge.b)) != 1)
       text += fmt::format("{} {} {}\n", kG2oOdometry, name(edge.a), name(edge.b));

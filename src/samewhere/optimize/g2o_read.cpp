@@ -1,19 +1,26 @@
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <string_view>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
+#include <samewhere/optimize/lay_out.hpp>
 
 namespace samewhere::optimize {
 namespace {
 
 constexpr double kMaxNormError = 1e-2;  // of a quaternion that files round
 constexpr double kMaxNumber = 1e9;      // of a pose: beyond, squares leave what numbers can hold
+constexpr double kMaxNegative = 1e-6;   // of the largest eigenvalue: below 0 by rounding
+constexpr double kLeastShare = 1e-9;    // of the largest eigenvalue: what a direction gets at least
+constexpr int kRobotBits = 56;          // GTSAM's keys: a letter, then the number
 
 [[noreturn]] void refuse(const core::TextLine& line, const std::string& what) {
   throw core::InputError(fmt::format("{}: {}", line.place, what));
@@ -33,11 +40,16 @@ constexpr Kind kPlanar{"VERTEX_SE2", "EDGE_SE2", 3, 3, true};
 
 // A file as it is read, line by line: vertices may come after the edges that name them.
 class Reader {
+  using Ends = std::pair<int, int>;  // nodes of an edge, the lower first
+
  public:
   explicit Reader(const std::filesystem::path& path) {
     for (const core::TextLine& line : core::read_text_lines(path)) read(line);
+    const bool is_without_vertices = node_of_.empty();
+    if (is_without_vertices) make_vertices();
     sort_by_name();
     for (const auto& line : odometry_) note_odometry(line);
+    for (const auto& line : loops_) note_loop(line);
     for (const auto& [line, kind] : edges_) add_edge(line, *kind);
     for (const auto& line : fixed_) fix(line);
     if (found_.names.empty() || found_.graph.edges.empty()) {
@@ -46,6 +58,9 @@ class Reader {
                       "(VERTEX_SE3:QUAT and EDGE_SE3:QUAT, or VERTEX_SE2 and EDGE_SE2)",
                       path.string(), found_.names.size(), found_.graph.edges.size()));
     }
+    found_.is_without_vertices = is_without_vertices;
+    if (is_without_vertices) lay_out(found_.graph);
+    warn_of_projected(path);
   }
 
   G2oGraph take() { return std::move(found_); }
@@ -61,7 +76,10 @@ class Reader {
       fixed_.push_back(line);
     } else if (type == kG2oOdometry) {
       odometry_.push_back(line);
+    } else if (type == kG2oLoop) {
+      loops_.push_back(line);
     } else {
+      if (type.starts_with("VERTEX_") && line.words.size() > 1) others_.insert(line.words[1]);
       ++found_.skipped[core::printable(type)];
     }
   }
@@ -74,6 +92,18 @@ class Reader {
       refuse(line, fmt::format("vertex {} a second time, expected once", name));
     found_.names.push_back(name);
     found_.graph.world_from_node.push_back(pose_of(line, 2, kind));
+  }
+
+  // A file of edges alone: each number that an edge names is a node, at the origin for now.
+  void make_vertices() {
+    for (const auto& [line, kind] : edges_) {
+      for (const std::size_t column : {1, 2}) {
+        const long name = name_of(line, column);
+        if (!node_of_.emplace(name, static_cast<int>(found_.names.size())).second) continue;
+        found_.names.push_back(name);
+        found_.graph.world_from_node.emplace_back();
+      }
+    }
   }
 
   // Nodes stand in the order of the path, whatever that of the lines is: what is earlier and later
@@ -89,17 +119,21 @@ class Reader {
     }
   }
 
-  void note_odometry(const core::TextLine& line) {
+  Ends ends_of(const core::TextLine& line) const {
     if (line.words.size() != 3)
       refuse(line, fmt::format("found {} values, expected 2, the vertices", line.words.size() - 1));
-    for (const std::size_t column : {1, 2}) node_of(line, column);
-    ++num_odometry_[undirected(name_of(line, 1), name_of(line, 2))];
+    return undirected(node_of(line, 1), node_of(line, 2));
   }
 
+  void note_odometry(const core::TextLine& line) { ++num_odometry_[ends_of(line)]; }
+  void note_loop(const core::TextLine& line) { num_odometry_.try_emplace(ends_of(line), 0); }
+
+  // A landmark that was left out may be fixed.
   void fix(const core::TextLine& line) {
-    found_.graph.fixed_nodes.push_back(node_of(line, 1));
-    for (std::size_t column = 2; column < line.words.size(); ++column)
-      found_.graph.fixed_nodes.push_back(node_of(line, column));
+    if (line.words.size() < 2) name_of(line, 1);
+    for (std::size_t column = 1; column < line.words.size(); ++column)
+      if (!others_.contains(line.words[column]))
+        found_.graph.fixed_nodes.push_back(node_of(line, column));
   }
 
   void add_edge(const core::TextLine& line, const Kind& kind) {
@@ -110,18 +144,24 @@ class Reader {
     if (edge.a == edge.b)
       refuse(line, fmt::format("joins {} to itself, expected two vertices", line.words[1]));
     edge.information = information_of(line, edge, kind);
-    edge.is_loop = is_loop(undirected(name_of(line, 1), name_of(line, 2)));
+    edge.is_loop = is_loop(undirected(edge.a, edge.b));
     found_.graph.edges.push_back(edge);
   }
 
-  using Ends = std::pair<long, long>;  // of an edge, the lower first
+  static Ends undirected(int a, int b) { return std::minmax(a, b); }
 
-  static Ends undirected(long a, long b) { return std::minmax(a, b); }
-
-  // Between neighbours the first edge is odometry, as everybody writes it.
+  // Between a number and the next one that is there, the first edge is odometry, as every program
+  // writes it.
   bool is_loop(const Ends& ends) {
-    const int left = num_odometry_.try_emplace(ends, ends.second - ends.first == 1).first->second--;
+    const int left = num_odometry_.try_emplace(ends, follows(ends) ? 1 : 0).first->second--;
     return left <= 0;
+  }
+
+  bool follows(const Ends& ends) const {
+    const auto robot_of = [&](int node) {
+      return found_.names[static_cast<std::size_t>(node)] >> kRobotBits;
+    };
+    return ends.second - ends.first == 1 && robot_of(ends.first) == robot_of(ends.second);
   }
 
   // The number of words, and that a file is either planar or not.
@@ -143,7 +183,8 @@ class Reader {
     const std::string& word = line.words[column];
     long name = 0;
     const char* const end = word.data() + word.size();
-    const auto [last, error] = std::from_chars(word.data(), end, name);
+    const char* const begin = word.data() + (word.size() > 1 && word.front() == '+' ? 1 : 0);
+    const auto [last, error] = std::from_chars(begin, end, name);
     if (error != std::errc{} || last != end || name < 0) {
       refuse(line, fmt::format("found '{}', expected the number of a vertex, 0 or more",
                                core::printable(word)));
@@ -176,24 +217,49 @@ class Reader {
     return {rotation, {v[0], v[1], v[2]}};
   }
 
-  static core::Matrix6d information_of(const core::TextLine& line, const PoseEdge& edge,
-                                       const Kind& kind) {
+  core::Matrix6d information_of(const core::TextLine& line, const PoseEdge& edge,
+                                const Kind& kind) {
     Eigen::MatrixXd given(kind.num_degrees, kind.num_degrees);
     std::size_t column = 3 + kind.num_pose;
     for (int row = 0; row < kind.num_degrees; ++row) {
       for (int i = row; i < kind.num_degrees; ++i)
         given(row, i) = given(i, row) = core::finite_number(line, column++);
     }
+    if (!is_definite(given)) given = projected(line, given);
+    const core::Matrix6d information = kind.is_planar ? lifted(given, edge) : turned(given, edge);
     // turned by the measurement, it may be indefinite by rounding
-    const auto is_definite = [](const auto& matrix) {
-      return Eigen::LLT<Eigen::MatrixXd>(matrix).info() == Eigen::Success;
-    };
-    core::Matrix6d information = core::Matrix6d::Zero();
-    if (is_definite(given))
-      information = kind.is_planar ? lifted(given, edge) : turned(given, edge);
-    if (!is_definite(information))
-      refuse(line, "an information that is not positive definite, expected one that is");
-    return information;
+    return is_definite(information) ? information : core::Matrix6d(projected(line, information));
+  }
+
+  static bool is_definite(const Eigen::MatrixXd& matrix) {
+    return Eigen::LLT<Eigen::MatrixXd>(matrix).info() == Eigen::Success;
+  }
+
+  // Where an edge measures nothing (its information has a direction of 0, or below by rounding), it
+  // gets next to nothing. What is clearly indefinite is refused: a sign or the order is wrong.
+  Eigen::MatrixXd projected(const core::TextLine& line, const Eigen::MatrixXd& given) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(given);
+    const Eigen::VectorXd& values = solver.eigenvalues();
+    const double largest = values(values.size() - 1);
+    if (solver.info() != Eigen::Success || !(largest > 0.0) ||
+        values(0) < -kMaxNegative * largest) {
+      refuse(line, fmt::format("an information that is not positive definite (eigenvalues {:.3g} "
+                               "to {:.3g}), expected one that is",
+                               values(0), largest));
+    }
+    if (projected_.empty() || projected_.back() != line.place) projected_.push_back(line.place);
+    const Eigen::MatrixXd usable = solver.eigenvectors() *
+                                   values.cwiseMax(kLeastShare * largest).asDiagonal() *
+                                   solver.eigenvectors().transpose();
+    return 0.5 * (usable + usable.transpose());
+  }
+
+  void warn_of_projected(const std::filesystem::path& path) const {
+    if (projected_.empty()) return;
+    spdlog::warn(
+        "{}: an information with a direction of 0, raised to {:g} of its largest; {} edges of {} "
+        "are so, this is the first",
+        projected_.front(), kLeastShare, projected_.size(), path.filename().string());
   }
 
   // For our error in place of g2o's, see g2o_information.
@@ -218,6 +284,9 @@ class Reader {
   std::vector<std::pair<core::TextLine, const Kind*>> edges_;
   std::map<Ends, int> num_odometry_;  // still to come
   std::vector<core::TextLine> odometry_;
+  std::vector<core::TextLine> loops_;
+  std::set<std::string> others_;        // vertices of types that are left out
+  std::vector<std::string> projected_;  // lines whose information was
   std::vector<core::TextLine> fixed_;
   const Kind* kind_ = nullptr;
 };

@@ -14,7 +14,9 @@ constexpr double kReaches[] = {3000.0, 300.0, 30.0};  // of the limit, see call_
 constexpr double kReachOfDoubted = 10.0;              // of the limit, see fit_with_doubted
 constexpr double kSpeaksFor = 0.5;  // bent so much less beside another, a loop says the same
 constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
-constexpr int kMaxChecks = 10;  // of sides changed after the rounds
+constexpr double kMaxRefusedShare = 0.02;  // of the loops, see is_consistent
+constexpr double kMaxSigmas = 5.0;         // of the sum of squared errors, see is_consistent
+constexpr int kMaxChecks = 10;             // of sides changed after the rounds
 // chi-square 99 %: 3 and 7 degrees of freedom for 6
 constexpr double kPlanarShare = 11.34 / 16.81;
 constexpr double kScaledShare = 18.48 / 16.81;
@@ -40,6 +42,17 @@ double degrees_of_freedom(const PoseGraph& graph) {
 
 }  // namespace
 
+bool is_consistent(const PoseGraph& graph, double chi2, std::size_t num_refused) {
+  const auto num_loops = std::count_if(graph.edges.begin(), graph.edges.end(),
+                                       [](const PoseEdge& edge) { return edge.is_loop; });
+  const double num_measured = static_cast<double>(graph.edges.size());
+  const double num_free =
+      static_cast<double>(graph.world_from_node.size() - held_nodes(graph).size());
+  const double expected = degrees_of_freedom(graph) * std::max(0.0, num_measured - num_free);
+  return static_cast<double>(num_refused) <= kMaxRefusedShare * static_cast<double>(num_loops) &&
+         chi2 <= expected + kMaxSigmas * std::sqrt(2.0 * expected);
+}
+
 Graduation::Graduation(PoseGraph& graph, const Config& config)
     : graph_(graph),
       config_(config),
@@ -59,6 +72,23 @@ PoseGraphSummary Graduation::solve() {
   const State start = state();
   if (!all_fit(start, summary)) ask_all(summary);
   return weighed(std::move(summary));
+}
+
+std::optional<PoseGraphSummary> Graduation::solve_if_consistent() {
+  const State start = state();
+  PoseGraphSummary summary = problem_.solve(config_.graph_iterations);
+  const auto is_fine = [&] {
+    const auto num_refused = std::count_if(loops_.begin(), loops_.end(), [&](std::size_t loop) {
+      return chi2_of(graph_, graph_.edges[loop]) > limit_;
+    });
+    return is_consistent(graph_, truncated_cost(), static_cast<std::size_t>(num_refused));
+  };
+  if (is_fine()) {
+    settle(summary);
+    if (is_fine()) return weighed(std::move(summary));
+  }
+  go_back(start);
+  return std::nullopt;
 }
 
 PoseGraphSummary Graduation::solve_each() {

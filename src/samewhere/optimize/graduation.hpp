@@ -10,6 +10,10 @@
 
 namespace samewhere::optimize {
 
+// Whether noise explains squared errors that sum up to `chi2` (a refused loop at the limit), with
+// so many loops refused: chance refuses one of a hundred.
+bool is_consistent(const PoseGraph& graph, double chi2, std::size_t num_refused);
+
 // Graduated non-convexity over the loop edges of a graph, see solve_pose_graph.
 class Graduation {
  public:
@@ -17,6 +21,9 @@ class Graduation {
   Graduation(PoseGraph& graph, const Config& config);
 
   PoseGraphSummary solve();
+  // Solves with all loops and refuses those that do not fit then: of a graph in which noise
+  // explains the rest, nothing more is needed. Nothing (and the graph as it was) if it does not.
+  std::optional<PoseGraphSummary> solve_if_consistent();
   // As published: nothing but the rounds.
   PoseGraphSummary solve_each();
 

@@ -11,7 +11,10 @@
 
 namespace samewhere::optimize {
 
-using PoseBlock = std::array<double, 7>;  // qx qy qz qw tx ty tz
+inline constexpr std::size_t kPoseSize = 7;
+inline constexpr std::size_t kPointSize = 3;
+
+using PoseBlock = std::array<double, kPoseSize>;  // qx qy qz qw tx ty tz
 
 inline PoseBlock to_block(const core::Rigid3& pose) {
   const auto& q = pose.rotation;

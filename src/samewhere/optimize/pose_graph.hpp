@@ -44,6 +44,7 @@ struct PoseGraphSummary {
   double initial_cost = 0.0;  // half of the squared errors, in variances, of the edges believed
   double final_cost = 0.0;
   int num_iterations = 0;
+  bool has_converged = false;  // of the last solve: not ended by its limit of iterations
   // What the loss makes as small as it can, to tell which of two starts ended better: final_cost,
   // and with kGnc half of the limit for each loop that is refused; a stretch refused as a whole is
   // one.

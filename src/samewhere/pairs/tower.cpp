@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/pairs/tower.hpp>
 
@@ -56,8 +57,7 @@ TowerSource tower_source(const std::string& source) {
 
 bool is_tower(const std::string& source) {
   const std::filesystem::path folder = tower_source(source).folder;
-  return std::filesystem::exists(folder / "dataset.csv") &&
-         std::filesystem::exists(folder / "walk.txt");
+  return core::is_there(folder / "dataset.csv") && core::is_there(folder / "walk.txt");
 }
 
 std::vector<TowerImage> read_tower(const TowerSource& source) {

@@ -6,17 +6,13 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
-#include <samewhere/core/tum_file.hpp>
 #include <samewhere/map/full_bundle.hpp>
 #include <samewhere/pipeline/by_hand.hpp>
 #include <samewhere/pipeline/correction.hpp>
-#include <samewhere/pipeline/map_export.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
-#include <samewhere/pipeline/slam.hpp>
+#include <samewhere/pipeline/run_lists.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
-#include <samewhere/report/frames.hpp>
 #include <samewhere/report/loops.hpp>
-#include <samewhere/report/ply.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::pipeline {
@@ -140,21 +136,6 @@ ByHand with_word(const scene::StoredMap& stored, const core::LedgerRow& row, Wor
                                : forced_by_hand(stored.map, row, ledger, config);
 }
 
-struct Text {
-  const char* file = nullptr;
-  std::string text;
-};
-
-std::vector<Text> texts_of(const scene::StoredMap& stored, const core::Ledger& ledger,
-                           const std::string& frames_csv) {
-  const core::Trajectory trajectory = trajectory_of(stored.map, stored.extras.frames);
-  return {{"loops.json", report::loops_json(ledger)},
-          {"trajectory.tum", core::tum_text(trajectory)},
-          {"odometry.tum", core::tum_text(odometry_of(stored.map, stored.extras.frames))},
-          {"frames.csv", report::with_poses(frames_csv, trajectory)},
-          {"map.ply", report::ply_bytes(points_of(stored.map))}};
-}
-
 // An error of the work names the folder of the run.
 template <class Work>
 auto naming(const std::filesystem::path& folder, const Work& work) {
@@ -221,9 +202,9 @@ ChangedRun change_run(const std::filesystem::path& folder, std::size_t candidate
     ledger[changed_row.candidate.id.index()] = changed_row;  // which came from there
   }
   stored.map = std::move(changed.map);
-  const auto texts = naming(folder, [&] { return texts_of(stored, ledger, frames_csv); });
+  const RunLists lists = naming(folder, [&] { return lists_of(stored, ledger, frames_csv); });
   file.commit(stored.map, news);
-  for (const auto& [name, text] : texts) core::write_file(folder / name, text);
+  write_lists(lists, folder);
   return result;
 }
 

@@ -1,3 +1,5 @@
+#include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -229,6 +231,54 @@ TEST_F(ByHandInAFolder, ForcingAndRejectingAreWrittenDown) {
   EXPECT_THAT(core::reason_of(verdict), HasSubstr("by hand"));
   EXPECT_TRUE(report::match_from_query_of(verdict)) << "it may be forced once more";
   expect_files_of_map();
+}
+
+// Killed after the map was committed and before, or while, the lists were written.
+TEST_F(ByHandInAFolder, ListsThatAreOlderThanTheMapAreWrittenAnew) {
+  constexpr const char* kLists[] = {"trajectory.tum", "odometry.tum", "frames.csv", "map.ply",
+                                    "loops.json"};
+  const std::string old_ledger = text_of("loops.json");
+  const std::string old_frames = text_of("frames.csv");
+  change_run(folder_.root(), 0, Word::kForce, {});
+  std::map<std::string, std::string> written;
+  for (const char* name : kLists) written[name] = text_of(name);
+  for (const std::size_t num_written : {0U, 1U, 4U}) {
+    SCOPED_TRACE(num_written);
+    for (std::size_t i = num_written; i < std::size(kLists); ++i)
+      folder_.write(kLists[i], "of before the change");
+    if (num_written < 3) folder_.write("frames.csv", old_frames);
+    folder_.write("loops.json", old_ledger);
+    EXPECT_TRUE(core::is_loop(ledger_of_run(folder_.root())[0].verdict));
+    for (const char* name : kLists) EXPECT_TRUE(text_of(name) == written[name]) << name;
+  }
+  // and where it was cut short, it may be changed once more
+  folder_.write("loops.json", old_ledger);
+  EXPECT_EQ(change_run(folder_.root(), 0, Word::kReject, {}).num_loops, 0U);
+  expect_files_of_map();
+}
+
+// A full disk ends the saving of a map, not the run: then the lists know more.
+TEST_F(ByHandInAFolder, ListsThatKnowMoreThanTheMapStayAsTheyAre) {
+  core::LedgerRow later = row_of(true_loop(13, 1), 1);
+  later.candidate.query = core::FrameId(12);
+  const core::Ledger ledger = {accepted(row_of(true_loop(13, 1), 0)), accepted(later)};
+  folder_.write("loops.json", report::loops_json(ledger));
+  const std::string before = text_of("loops.json");
+  EXPECT_TRUE(core::is_loop(ledger_of_run(folder_.root())[1].verdict));
+  EXPECT_TRUE(text_of("loops.json") == before);
+}
+
+// What the map says of its ledger may come from anywhere.
+TEST_F(ByHandInAFolder, AForgedLedgerInTheMapChangesNoLists) {
+  {
+    scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
+    file.load();
+    const std::string deep(100'000, '[');
+    file.commit(map_, {.ledger = {R"({"reason": "by hand", "query": )" + deep}});
+  }
+  const std::string before = text_of("loops.json");
+  EXPECT_EQ(ledger_of_run(folder_.root()).size(), 1U);
+  EXPECT_TRUE(text_of("loops.json") == before);
 }
 
 TEST_F(ByHandInAFolder, WhatCannotBeDoneChangesNothing) {

@@ -33,7 +33,8 @@ Config profile(const std::string& name) {
 Config load_config(const std::string& profile_name, const std::filesystem::path& file,
                    const std::vector<std::string>& assignments) {
   Config config = profile(profile_name);
-  if (!file.empty()) core::read_config(config, core::read_file(file), file.string());
+  if (!file.empty())
+    core::read_config(config, core::read_file(file, core::kSettingsLimit), file.string());
   for (const auto& assignment : assignments) core::set_config(config, assignment);
   return config;
 }

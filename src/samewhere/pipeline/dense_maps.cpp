@@ -23,6 +23,7 @@
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/pipeline/dense_maps.hpp>
 #include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/pipeline/run_lists.hpp>
 #include <samewhere/report/ply.hpp>
 
 namespace samewhere::pipeline {
@@ -70,6 +71,7 @@ KeyframeStamps read_keyframes(const std::filesystem::path& path) {
 }
 
 Poses read_keyframe_poses(const std::filesystem::path& run) {
+  if (std::filesystem::exists(run / "loops.json")) ledger_in_step(run);
   const core::Trajectory trajectory = core::read_tum(run / "trajectory.tum");
   std::map<std::int64_t, core::Rigid3> pose_at;
   for (const auto& pose : trajectory) pose_at[in_units(pose.stamp_s)] = pose.world_from_camera;

@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <samewhere/core/file.hpp>
+#include <samewhere/optimize/any_start.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
 #include <samewhere/pipeline/graph_file.hpp>
 #include <samewhere/report/graph_plan.hpp>
@@ -33,6 +35,14 @@ std::size_t num_alone(const optimize::PoseGraph& graph) {
   return static_cast<std::size_t>(std::count(has_edge.begin(), has_edge.end(), false));
 }
 
+// A graph that was solved, and how.
+struct Solved {
+  const optimize::PoseGraph& graph;
+  const optimize::AnyStartSummary& summary;
+  double g2o_chi2_before = 0.0;
+  double seconds = 0.0;
+};
+
 std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
   const optimize::PoseGraph& graph = file.graph;
   const std::size_t loops = num_loops(graph);
@@ -41,6 +51,8 @@ std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
                             graph.is_planar ? "the plane" : "space")},
       {"edges", fmt::format("{}: {} from a pose to the next, {} loops", graph.edges.size(),
                             graph.edges.size() - loops, loops)}};
+  if (file.is_without_vertices)
+    figures.push_back({"vertices", "none in the file; poses laid out along the edges"});
   if (const std::size_t alone = num_alone(graph); alone > 0)
     figures.push_back({"poses without an edge", fmt::format("{}, left out", alone)});
   if (const std::size_t parts = num_parts(graph) - num_alone(graph); parts > 1)
@@ -50,17 +62,31 @@ std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
   return figures;
 }
 
-std::vector<report::Figure> figures_of_solution(const optimize::PoseGraph& graph,
-                                                const optimize::PoseGraphSummary& summary,
-                                                double seconds) {
+// Of the edges believed, or of all of them, with g2o's error.
+double g2o_chi2(const optimize::PoseGraph& graph, const std::vector<double>& weights) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < graph.edges.size(); ++i)
+    sum += (weights.empty() ? 1.0 : weights[i]) * g2o_chi2_of(graph, graph.edges[i]);
+  return sum;
+}
+
+std::vector<report::Figure> figures_of_solution(const Solved& solved) {
+  const optimize::PoseGraphSummary& summary = solved.summary.solution;
   std::size_t refused = 0;
   for (const double weight : summary.weights) refused += weight < kBelieved ? 1 : 0;
-  return {
-      {"cost before / after", fmt::format("{:.6g} / {:.6g} (half of the squared errors believed)",
-                                          summary.initial_cost, summary.final_cost)},
-      {"loops believed / refused", fmt::format("{} / {}", num_loops(graph) - refused, refused)},
-      {"iterations", std::to_string(summary.num_iterations)},
-      {"time", fmt::format("{:.2f} s", seconds)}};
+  return {{"cost before / after",
+           fmt::format("{:.6g} / {:.6g} (half of the squared errors; before: of all edges, after: "
+                       "of those believed)",
+                       summary.initial_cost, summary.final_cost)},
+          {"chi2 before / after",
+           fmt::format("{:.6g} / {:.6g} (as g2o computes it, of the same edges)",
+                       solved.g2o_chi2_before, g2o_chi2(solved.graph, summary.weights))},
+          {"loops believed / refused",
+           fmt::format("{} / {}", num_loops(solved.graph) - refused, refused)},
+          {"started from", std::string(name_of(solved.summary.start))},
+          {"iterations", std::to_string(summary.num_iterations)},
+          {"converged", summary.has_converged ? "yes" : "no, the iterations ran out"},
+          {"time", fmt::format("{:.2f} s", solved.seconds)}};
 }
 
 std::string loops_csv(const optimize::G2oGraph& file, const std::vector<double>& weights) {
@@ -97,9 +123,17 @@ std::vector<report::Figure> optimize_graph(const std::filesystem::path& file,
                                            const GraphExports& wanted) {
   optimize::G2oGraph read = optimize::read_g2o(file);
   std::vector<core::Rigid3> before = read.graph.world_from_node;
+  const double g2o_chi2_before = g2o_chi2(read.graph, {});
   const auto start = std::chrono::steady_clock::now();
-  const optimize::PoseGraphSummary summary = solve_pose_graph(read.graph, config);
+  const optimize::AnyStartSummary solved = solve_from_any_start(read.graph, config);
+  const optimize::PoseGraphSummary& summary = solved.solution;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (!summary.has_converged) {
+    spdlog::warn(
+        "{}: not converged after {} iterations; expected convergence, try --set "
+        "optimize.graph_iterations={}",
+        file.string(), summary.num_iterations, std::min(1000, 4 * config.graph_iterations));
+  }
 
   if (!wanted.g2o.empty()) core::write_file(wanted.g2o, g2o_text(read.graph, read.names));
   if (!wanted.loops.empty()) core::write_file(wanted.loops, loops_csv(read, summary.weights));
@@ -109,7 +143,7 @@ std::vector<report::Figure> optimize_graph(const std::filesystem::path& file,
     core::write_file(wanted.svg, report::graph_plan_svg(record));
   }
   std::vector<report::Figure> figures = figures_of_graph(read);
-  for (auto& figure : figures_of_solution(read.graph, summary, seconds.count()))
+  for (auto& figure : figures_of_solution({read.graph, solved, g2o_chi2_before, seconds.count()}))
     figures.push_back(std::move(figure));
   return figures;
 }

@@ -1,6 +1,9 @@
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <samewhere/core/errors.hpp>
+#include <samewhere/describe/describer.hpp>
 #include <samewhere/pipeline/mapped_slam.hpp>
 
 namespace samewhere::pipeline {
@@ -23,6 +26,18 @@ void require_same_depth(const MapPlan& plan, const scene::MapVersion& known, Dep
   }
 }
 
+// The header may say so and the descriptors not.
+void require_same_describer(const std::filesystem::path& map, const core::Descriptor& known,
+                            const Config& config) {
+  const auto describer = describe::make_describer(config.describe);
+  const core::Descriptor own = describer->describe(known.frame, cv::Mat::zeros(64, 64, CV_8U));
+  if (known.describer_checksum == own.describer_checksum && known.unit.size() == own.unit.size())
+    return;
+  throw core::InputError(fmt::format(
+      "{}: is damaged: its views are described by {} numbers, not by the {} of its describer",
+      map.string(), known.unit.size(), own.unit.size()));
+}
+
 }  // namespace
 
 MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan& plan)
@@ -31,7 +46,6 @@ MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan
       .keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); }};
   if (plan.known.empty()) {
     slam_.emplace(config, depth_from, hooks);
-    if (!plan.save.empty()) saver_.emplace(plan.save, config, slam_->describer_checksum());
     return;
   }
   using enum scene::MapAccess;
@@ -41,6 +55,7 @@ MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan
     throw core::InputError(plan.known.string() + ": is a map without a keyframe");
   require_same_depth(plan, stored.map, depth_from);
   is_metric_ = !scene::is_without_depth(stored.map);
+  if (!stored.extras.descriptors.empty()) known_view_ = stored.extras.descriptors.front();
   slam_.emplace(config, stored, plan.is_known_fixed ? Slam::Use::kLocalize : Slam::Use::kExtend,
                 hooks);
 }
@@ -53,7 +68,6 @@ void MappedSlam::feed(core::Frame& frame) {
 }
 
 std::optional<std::string> MappedSlam::finish() {
-  begin();
   slam_->finish();
   if (!saver_) return std::nullopt;
   const std::optional<std::string> error = saver_->error();
@@ -61,8 +75,13 @@ std::optional<std::string> MappedSlam::finish() {
   return error;
 }
 
+// Before mapping has a frame.
 void MappedSlam::begin() {
-  if (auto begin = std::exchange(plan_.begin, {})) begin();
+  const auto begin = std::exchange(plan_.begin, {});
+  if (!begin) return;
+  const std::filesystem::path save = begin();
+  if (plan_.known.empty() && !save.empty())
+    saver_.emplace(save, config_, slam_->describer_checksum());
 }
 
 // Called in mapping's thread.
@@ -74,6 +93,7 @@ void MappedSlam::keep(const scene::MapVersion& map, const MapNews& news) {
 // The first frame says which camera it is.
 void MappedSlam::take_known(const core::Rig& rig) {
   known_->require_same_settings(map_header(config_, rig, slam_->describer_checksum()));
+  if (known_view_) require_same_describer(plan_.known, *known_view_, config_);
   if (!plan_.is_known_fixed) {
     known_->begin_writing();
     saver_.emplace(std::move(*known_));

@@ -14,12 +14,12 @@ namespace samewhere::pipeline {
 
 // What a run does with map files. Empty paths: nothing.
 struct MapPlan {
-  std::filesystem::path save;  // a new file for the map, which grows with it, a commit per keyframe
   std::filesystem::path known;  // a map to start in, lost; then nothing is saved elsewhere
   bool is_known_fixed = false;  // localise only; else the known map grows
-  // Called once, when the known map, if any, was read and fits the first frame, or the source has
-  // none: nothing is written before. May be empty.
-  std::function<void()> begin = {};
+  // Called once, when there is a first frame that the known map, if any, fits: nothing is written
+  // before, nor at all if the source gives none. Returns a new file for the map, which grows with
+  // it, a commit per keyframe. May be empty.
+  std::function<std::filesystem::path()> begin = {};
 };
 
 // A Slam, in a known map or from nothing, and what keeps its map.
@@ -53,7 +53,8 @@ class MappedSlam {
   Config config_;
   MapPlan plan_;
   bool is_metric_;
-  std::optional<scene::MapFile> known_;  // until the first frame
+  std::optional<scene::MapFile> known_;         // until the first frame
+  std::optional<core::Descriptor> known_view_;  // one of its views
   std::optional<MapSaver> saver_;
   std::map<core::FrameId, std::string> thumbnails_;  // written in mapping's thread
   std::optional<Slam> slam_;                         // last: its threads end before what they use

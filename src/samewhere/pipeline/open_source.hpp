@@ -19,7 +19,8 @@ std::unique_ptr<core::Source> open_source_with_truth(const Config& config);
 // Whether the size of the world cannot be measured: one camera, no depth.
 bool is_scale_free(const core::SourceInfo& info);
 
-// Throws InputError if the source lacks the camera file that SLAM needs.
+// Throws InputError if the source lacks the calibration that SLAM needs (self_calibration.hpp
+// guesses that of one camera).
 void require_slam_input(const core::SourceInfo& info, const Config& config);
 
 // The config with retrieve.window_frames: given in it, or window_s at the source's frame rate.

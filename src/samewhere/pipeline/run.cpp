@@ -59,8 +59,10 @@ class FrameFeed {
       return frame;
     } catch (const core::InputError& error) {
       outcome_.record.input_error = error.what();
-      return std::nullopt;
+    } catch (const core::Interrupted&) {
+      outcome_.record.is_interrupted = true;
     }
+    return std::nullopt;
   }
 
   // When all frames were given: how long they took to come, and what was dropped meanwhile.
@@ -155,6 +157,11 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   }
   const SlamEvaluation evaluation = evaluate_slam(findings, truth);
   record.figures = figures_of(evaluation);
+  record.is_scale_unknown = !mapped.is_metric();
+  if (record.is_scale_unknown) {
+    record.figures.push_back(
+        {"scale", "unknown: one camera without depth; lengths of the results are in map units"});
+  }
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"no start, at the end", slam.why_not_started()});
   record.figures.push_back({"starts given up", fmt::format("{}", slam.num_starts_given_up())});
@@ -228,7 +235,8 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   return outcome;
 }
 
-RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given) {
+RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given,
+                           std::function<void()> begin) {
   const auto source = read_ahead(std::move(unbuffered), given);
   const core::Truth truth = source->truth();
   Config config = with_window_in_frames(given, source->info());
@@ -237,7 +245,12 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Confi
   Recognition recognition(config);
   FrameFeed feed(*source, outcome);
   const auto run = config.threads ? run_in_threads : run_in_turn;
-  run([&feed] { return feed.next(); }, recognition.steps());
+  const auto next = [&] {
+    auto frame = feed.next();
+    if (frame && begin) std::exchange(begin, {})();
+    return frame;
+  };
+  run(next, recognition.steps());
   std::move(recognition).report_to(outcome);
   report::RunRecord& record = outcome.record;
   feed.report();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ RunOutcome run_slam(std::unique_ptr<core::Source> source, const Config& config,
                     const MapPlan& plan = {});
 
 // Recognition alone: every frame is a query against all older ones. Needs neither depth nor camera.
-RunOutcome run_recognition(std::unique_ptr<core::Source> source, const Config& config);
+// `begin`, if any, is called once, when there is a first frame.
+RunOutcome run_recognition(std::unique_ptr<core::Source> source, const Config& config,
+                           std::function<void()> begin = {});
 
 }  // namespace samewhere::pipeline

@@ -14,8 +14,8 @@
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/pipeline/run_lists.hpp>
 #include <samewhere/report/frames.hpp>
-#include <samewhere/report/loops_read.hpp>
 #include <samewhere/report/timing_json.hpp>
 #include <samewhere/scene/map_file.hpp>
 
@@ -41,6 +41,7 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
 }
 
 SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_scale_free) {
+  const core::Ledger ledger = ledger_of_run(folder);  // first: it brings the other lists in step
   const report::FrameTimes frames = report::read_frames_csv(folder / "frames.csv");
   SlamFindings findings;
   findings.num_frames = static_cast<int>(frames.stamps_s.size());
@@ -51,7 +52,6 @@ SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_sca
   for (std::size_t i = 0; i < frames.stamps_s.size(); ++i)
     stamp_of[core::FrameId(i)] = frames.stamps_s[i];
   try {
-    const core::Ledger ledger = ledger_of_run(folder);
     add_loops(ledger, stamp_of, findings);
     add_found_again(ledger, stamp_of, frames.resumed, findings);
   } catch (const std::out_of_range&) {
@@ -78,14 +78,13 @@ Config config_of_run(const std::filesystem::path& folder,
                      const std::vector<std::string>& assignments) {
   Config config;
   const std::filesystem::path config_file = folder / "config.yaml";
-  core::read_config(config, core::read_file(config_file), config_file.string());
+  core::read_config(config, core::read_file(config_file, core::kSettingsLimit),
+                    config_file.string());
   for (const auto& assignment : assignments) core::set_config(config, assignment);
   return config;
 }
 
-core::Ledger ledger_of_run(const std::filesystem::path& folder) {
-  return report::read_loops_json(folder / "loops.json");
-}
+core::Ledger ledger_of_run(const std::filesystem::path& folder) { return ledger_in_step(folder); }
 
 const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
                               const std::filesystem::path& folder) {
@@ -163,10 +162,12 @@ core::Truth with_trajectory(core::Truth truth, const std::filesystem::path& file
 
 std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder,
                                             const std::filesystem::path& truth_file) {
-  const Config config = config_of_run(folder);
+  Config config = config_of_run(folder);
+  const bool is_recognition = core::is_there(folder / "matches.txt");
+  config.input.needs_calibration = !is_recognition;
   const auto source = open_source(config);
   core::Truth truth = source->truth();
-  if (std::filesystem::exists(folder / "matches.txt")) {
+  if (is_recognition) {
     const RecognitionFindings findings{
         static_cast<int>(ledger_of_run(folder).size()), read_pairs(folder / "matches.txt"),
         read_pairs(folder / "accepted.txt"), config.retrieve.window_frames};

@@ -24,8 +24,8 @@ std::filesystem::path map_file_of(const std::filesystem::path& path);
 Config config_of_run(const std::filesystem::path& folder,
                      const std::vector<std::string>& assignments = {});
 
-// The last verdict on each candidate of a finished run. Throws InputError as
-// report::read_loops_json does.
+// The last verdict on each candidate of a finished run; its lists are brought in step with its map
+// (run_lists.hpp). Throws InputError as report::read_loops_json does.
 core::Ledger ledger_of_run(const std::filesystem::path& folder);
 
 // One of its rows. Throws InputError, naming the folder, if there are not so many.

@@ -46,6 +46,11 @@ Tracking::Tracking(const Config& config, const scene::StoredMap& known, bool is_
   std::uint16_t last_session = 0;
   for (const auto& frame : known.extras.frames)
     last_session = std::max(last_session, frame.frame.session());
+  // a session that was killed at its first keyframe has no frame yet
+  for (std::size_t i = 0; i < map_.keyframes.size(); ++i)
+    last_session = std::max(last_session, map_.keyframes[i].view.frame.session());
+  for (const auto& descriptor : known.extras.descriptors)
+    last_session = std::max(last_session, descriptor.frame.session());
   session_ = static_cast<std::uint16_t>(last_session + 1);
 }
 

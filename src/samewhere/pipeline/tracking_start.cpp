@@ -34,6 +34,12 @@ std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
 }
 
 std::string Tracking::why_not_started() const {
+  if (!starter_ && num_with_depth_ == 0) {
+    return fmt::format(
+        "no feature has depth, expected {}: the depth pictures are missing or empty, or the "
+        "pictures show no corners",
+        config_.map.min_landmarks);
+  }
   if (!starter_) {
     return fmt::format("{} features with depth, expected {}", num_with_depth_,
                        config_.map.min_landmarks);

@@ -37,7 +37,8 @@ std::string card_of(const WordTraining& training, const TrainedWords& trained,
                     const Json& sources) {
   const Json card = {
       {"vocabulary", training.out.filename().string()},
-      {"checksum", fmt::format("{:016x}", core::checksum(core::read_file(training.out)))},
+      {"checksum",
+       fmt::format("{:016x}", core::checksum(core::read_file(training.out, core::kNetworkLimit)))},
       {"command", training.command},
       {"sources", sources},
       {"num_pictures", trained.num_pictures},

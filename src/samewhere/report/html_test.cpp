@@ -55,6 +55,15 @@ std::string without_pictures(const std::string& html) {
   return text;
 }
 
+TEST(Html, WhereTheScaleIsUnknownNoScaleBarSaysMetres) {
+  RunRecord record = sample_record();
+  EXPECT_NE(report_html(record).find("class=\"bar\""), std::string::npos);
+  record.is_scale_unknown = true;
+  const std::string html = report_html(record);
+  EXPECT_EQ(html.find("class=\"bar\""), std::string::npos);
+  EXPECT_NE(html.find("The scale is unknown"), std::string::npos);
+}
+
 TEST(ReportHtml, IsWellNestedAndNeedsNothingFromOutside) {
   const std::string html = without_pictures(report_html(sample_record()));
   EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));

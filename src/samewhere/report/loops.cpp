@@ -35,24 +35,30 @@ void add_other_place(Json& scores, const core::OtherPlaceEvidence& other) {
   add_score(scores, "other_place_apart_rad", other.apart_rad);
 }
 
+// "num_matches" are those that "num_inliers" are of: the guided ones, if there are any; those of
+// the descriptors alone are "num_first_matches" then. Without a geometry its scores are null.
+void add_geometry(Json& scores, const core::GeometryEvidence& geometry) {
+  const bool is_guided = geometry.num_guided_matches > 0;
+  scores["num_matches"] = is_guided ? geometry.num_guided_matches : geometry.num_matches;
+  if (is_guided) scores["num_first_matches"] = geometry.num_matches;
+  scores["num_inliers"] = geometry.num_inliers;
+  const bool is_measured = geometry.num_inliers > 0;
+  const auto add = [&](const char* name, double value) {
+    is_measured ? add_score(scores, name, value) : void(scores[name] = nullptr);
+  };
+  add("inlier_ratio", geometry.inlier_ratio);
+  add("spread_ratio", geometry.spread_ratio);
+  add("overlap_ratio", geometry.overlap_ratio);
+  add("reprojection_rmse_px", geometry.reprojection_rmse_px);
+  if (geometry.disagreement_m) add_score(scores, "disagreement_m", *geometry.disagreement_m);
+  if (geometry.disagreement_rad) add_score(scores, "disagreement_rad", *geometry.disagreement_rad);
+}
+
 Json scores_of(const core::Verdict& verdict) {
   const core::Evidence& evidence = core::evidence_of(verdict);
   Json scores = Json::object();
   add_score(scores, "similarity", evidence.similarity);
-  if (evidence.geometry) {
-    scores["num_matches"] = evidence.geometry->num_matches;
-    scores["num_inliers"] = evidence.geometry->num_inliers;
-    add_score(scores, "inlier_ratio", evidence.geometry->inlier_ratio);
-    add_score(scores, "spread_ratio", evidence.geometry->spread_ratio);
-    add_score(scores, "overlap_ratio", evidence.geometry->overlap_ratio);
-    add_score(scores, "reprojection_rmse_px", evidence.geometry->reprojection_rmse_px);
-    if (evidence.geometry->disagreement_m) {
-      add_score(scores, "disagreement_m", *evidence.geometry->disagreement_m);
-    }
-    if (evidence.geometry->disagreement_rad) {
-      add_score(scores, "disagreement_rad", *evidence.geometry->disagreement_rad);
-    }
-  }
+  if (evidence.geometry) add_geometry(scores, *evidence.geometry);
   if (evidence.odometry) {
     add_score(scores, "correction_m", evidence.odometry->correction_m);
     add_score(scores, "correction_rad", evidence.odometry->correction_rad);
@@ -126,10 +132,11 @@ std::string name_of_match(const core::Candidate& candidate) {
   return fmt::format("{} of session {}", index, candidate.match.session());
 }
 
-std::string loops_json(const core::Ledger& ledger) {
+std::string loops_json(const core::Ledger& ledger, bool is_scale_unknown) {
   Json candidates = Json::array();
   for (const core::LedgerRow* row : final_rows(ledger)) candidates.push_back(entry_of(*row));
-  const Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
+  Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
+  if (is_scale_unknown) document["scale"] = "unknown";
   return dumped(document, 1) + "\n";
 }
 

@@ -60,7 +60,8 @@ class Entry {
 
   std::optional<double> score(const char* name) const {
     const auto found = scores_.find(name);
-    return found == scores_.end() ? std::nullopt : std::optional(found->get<double>());
+    if (found == scores_.end() || found->is_null()) return std::nullopt;
+    return found->get<double>();
   }
 
   core::Refusal stage() const {
@@ -85,7 +86,7 @@ class Entry {
 
   core::Evidence evidence() const {
     core::Evidence evidence{.similarity = row_.candidate.similarity};
-    if (scores_.contains("num_matches")) evidence.geometry = geometry();
+    if (score("num_matches")) evidence.geometry = geometry();
     if (const auto squared = score("mahalanobis_squared"))
       evidence.odometry = {score("correction_m").value_or(0.0),
                            score("correction_rad").value_or(0.0), *squared};
@@ -123,7 +124,11 @@ class Entry {
   core::GeometryEvidence geometry() const {
     core::GeometryEvidence geometry;
     geometry.num_matches = scores_.at("num_matches").get<int>();
-    geometry.num_inliers = scores_.at("num_inliers").get<int>();
+    if (score("num_first_matches")) {
+      geometry.num_guided_matches = geometry.num_matches;
+      geometry.num_matches = scores_.at("num_first_matches").get<int>();
+    }
+    geometry.num_inliers = score("num_inliers") ? scores_.at("num_inliers").get<int>() : 0;
     geometry.inlier_ratio = score("inlier_ratio").value_or(0.0);
     geometry.spread_ratio = score("spread_ratio").value_or(0.0);
     geometry.overlap_ratio = score("overlap_ratio").value_or(0.0);
@@ -163,6 +168,27 @@ core::Ledger read_loops_json(const std::filesystem::path& path) {
   } catch (const core::InputError& error) {
     throw core::InputError(fmt::format("{}: {}{}", path.string(), where, error.what()));
   }
+}
+
+core::Ledger read_ledger_rows(const std::vector<std::string>& rows, const std::string& name) {
+  core::Ledger ledger;
+  for (const std::string& row : rows) {
+    const auto refuse = [&](const char* why) {
+      throw core::InputError(
+          fmt::format("{}: row {} of its ledger: expected what `samewhere run` "
+                      "writes, but {}",
+                      name, ledger.size(), why));
+    };
+    try {
+      const Json json = Json::parse(row);
+      ledger.push_back(Entry(json, ledger.size()).row());
+    } catch (const Json::exception& error) {
+      refuse(error.what());
+    } catch (const core::InputError& error) {
+      refuse(error.what());
+    }
+  }
+  return ledger;
 }
 
 }  // namespace samewhere::report

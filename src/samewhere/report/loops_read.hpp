@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <samewhere/core/ledger.hpp>
 
@@ -11,5 +13,9 @@ namespace samewhere::report {
 // InputError for a file that is missing, cut, of another version, or has an entry that misses a
 // field or has one of another kind, naming the entry.
 core::Ledger read_loops_json(const std::filesystem::path& path);
+
+// Rows of a ledger as report::ledger_row_json wrote them, numbered in their order. Throws
+// InputError as above; `name` is how a message calls where they are from.
+core::Ledger read_ledger_rows(const std::vector<std::string>& rows, const std::string& name);
 
 }  // namespace samewhere::report

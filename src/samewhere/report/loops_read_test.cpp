@@ -49,6 +49,22 @@ TEST_F(LoopsRead, WhatWasWrittenIsWrittenAgain) {
   EXPECT_EQ(found[34].candidate.id, core::CandidateId(34)) << "by position";
 }
 
+TEST_F(LoopsRead, BothStagesOfMatchesAreReadBackAndNullIsNotMeasured) {
+  core::Evidence guided = evidence(0.8, 60, 50);
+  guided.geometry->num_guided_matches = 110;
+  core::Evidence none = evidence(0.8, 30, 0);
+  none.geometry = core::GeometryEvidence{.num_matches = 30};
+  const std::string text = loops_json(
+      {refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kSpread, guided, "one corner"),
+       refused_row(candidate(1, 9, 3, 0.8), core::Refusal::kInliers, none, "none")});
+  ASSERT_THAT(text, HasSubstr("null"));
+  const core::Ledger found = read(text);
+  EXPECT_EQ(loops_json(found), text);
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->num_matches, 60);
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->num_guided_matches, 110);
+  EXPECT_EQ(core::evidence_of(found.at(1).verdict).geometry->reprojection_rmse_px, 0.0);
+}
+
 TEST_F(LoopsRead, AMatchOfAnEarlierSessionStaysOne) {
   core::LedgerRow row = refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kMatches,
                                     evidence(0.8, 10, 0), "too few");

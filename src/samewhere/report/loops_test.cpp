@@ -43,7 +43,7 @@ TEST(LoopsJson, FollowsTheSchema) {
     EXPECT_TRUE(entry.at("match").is_number_unsigned());
     EXPECT_TRUE(entry.at("reason").is_string());
     for (const auto& [name, score] : entry.at("scores").items())
-      EXPECT_TRUE(score.is_number()) << name;
+      EXPECT_TRUE(score.is_number() || score.is_null()) << name;
     const Json& pose = entry.at("match_from_query");
     EXPECT_TRUE(pose.is_null() || pose.size() == 7u);
   }
@@ -80,6 +80,33 @@ TEST(LoopsJson, ARefusedCandidateSaysWhereAndWhy) {
   EXPECT_EQ(entry.at("reason"), "too low");
   EXPECT_EQ(entry.at("scores"), Json({{"similarity", 0.72}}));
   EXPECT_TRUE(entry.at("match_from_query").is_null());
+}
+
+TEST(LoopsJson, ScoresOfAGeometryThatWasNotFoundAreNull) {
+  core::Evidence none = evidence(0.72, 30, 0);
+  none.geometry = core::GeometryEvidence{.num_matches = 30};
+  const Json entry =
+      parsed({refused_row(candidate(0, 9, 1, 0.72), core::Refusal::kInliers, none, "none")})
+          .at("candidates")
+          .at(0);
+  EXPECT_EQ(entry.at("scores"), Json({{"similarity", 0.72},
+                                      {"num_matches", 30},
+                                      {"num_inliers", 0},
+                                      {"inlier_ratio", nullptr},
+                                      {"spread_ratio", nullptr},
+                                      {"overlap_ratio", nullptr},
+                                      {"reprojection_rmse_px", nullptr}}));
+}
+
+TEST(LoopsJson, InliersAreOfTheMatchesOfTheSameStage) {
+  core::LedgerRow row = loop_row(candidate(0, 9, 1, 0.75), 80);
+  core::GeometryEvidence& geometry = *std::get<core::LoopClosure>(row.verdict).evidence.geometry;
+  geometry.num_matches = 60;
+  geometry.num_guided_matches = 110;
+  const Json scores = parsed({row}).at("candidates").at(0).at("scores");
+  EXPECT_EQ(scores.at("num_matches"), 110);
+  EXPECT_EQ(scores.at("num_first_matches"), 60);
+  EXPECT_EQ(scores.at("num_inliers"), 80);
 }
 
 TEST(LoopsJson, TheLastVerdictWins) {

@@ -62,7 +62,9 @@ std::string scores_of(const core::Evidence& evidence) {
   std::string text = fmt::format("similarity {:.2f}", evidence.similarity);
   if (evidence.geometry)
     fmt::format_to(std::back_inserter(text), " · {} matches · {} inliers",
-                   evidence.geometry->num_matches, evidence.geometry->num_inliers);
+                   evidence.geometry->num_guided_matches > 0 ? evidence.geometry->num_guided_matches
+                                                             : evidence.geometry->num_matches,
+                   evidence.geometry->num_inliers);
   return text;
 }
 

@@ -54,6 +54,7 @@ struct RunRecord {
   std::optional<double> processor_ms;
   std::string config_yaml;
   std::optional<double> first_pose_s;  // from the program's start to the first measured pose
+  bool is_scale_unknown = false;       // one camera without depth: lengths are in map units
   bool is_interrupted = false;
   std::optional<std::string> input_error;  // the source broke: what came after is missing
 };

@@ -190,12 +190,17 @@ std::string trajectory_figure(const RunRecord& record) {
              "aria-label=\"the path of the camera\">\n",
              kFigureWidth_px, page.height_px()) +
          drawn(odometry, "odometry", page) + drawn(path, "path", page) +
-         drawn(truth, "truth", page) + loops + start_and_end(path, page) + scale_bar(page) +
-         "</svg></div>" + legend(record, !loops.empty()) +
+         drawn(truth, "truth", page) + loops + start_and_end(path, page) +
+         (record.is_scale_unknown ? "" : scale_bar(page)) + "</svg></div>" +
+         legend(record, !loops.empty()) +
          (view.is_from_above
               ? "<p class=\"note\">Seen from above.</p>"
               : "<p class=\"note\">Seen so that the two directions of most motion lie on the "
                 "page.</p>") +
+         (record.is_scale_unknown
+              ? "<p class=\"note\">The scale is unknown: one camera without depth measures "
+                "directions, not lengths.</p>"
+              : "") +
          "</figure>\n";
 }
 

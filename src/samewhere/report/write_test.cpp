@@ -74,8 +74,16 @@ TEST_F(Write, RecognitionAloneLeavesMatchesAndAcceptedPairs) {
   EXPECT_EQ(core::read_file(first_ / "report.html").find("The path"), std::string::npos);
 }
 
-TEST_F(Write, AFolderThatIsNotThereIsNamed) {
-  EXPECT_THROW(write_run({}, root_ / "nowhere"), core::InputError);
+TEST_F(Write, WhatCannotBeWrittenIsNamedAndTheRestIsThere) {
+  fs::create_directory(first_ / "trajectory.tum");
+  fs::create_directory(first_ / "map.ply");
+  const std::vector<std::string> errors = write_run(sample_record(), first_);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_NE(errors[0].find("trajectory.tum: cannot be written"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[1].find("map.ply: cannot be written"), std::string::npos) << errors[1];
+  EXPECT_EQ(names_in(first_).size(), 8u) << "and no temporary file";
+  EXPECT_FALSE(core::read_file(first_ / "loops.json").empty());
+  EXPECT_EQ(write_run(sample_record(), root_ / "nowhere").size(), 8u);
 }
 
 }  // namespace

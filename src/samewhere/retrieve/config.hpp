@@ -61,8 +61,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .min = 0,
          .max = 1000});
   visit("vocabulary", config.vocabulary,
-        {.help = "word_candidates: file of `samewhere train words`; relative to the working "
-                 "directory, then to models/"});
+        {.help = "word_candidates: file of `samewhere train words`; a name alone: of models/, "
+                 "or else of the working directory"});
   visit("window_s", config.window_s,
         {.help = "a view this old or younger is no candidate, by the source's frame rate",
          .min = 0.0,

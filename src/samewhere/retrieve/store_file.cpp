@@ -109,7 +109,7 @@ void save_store(const SegmentedStore& store, std::uint64_t describer_checksum,
 
 SegmentedStore load_store(const std::filesystem::path& path, std::uint64_t describer_checksum,
                           const StoreLayout& layout) {
-  const std::string bytes = core::read_file(path);
+  const std::string bytes = core::read_file(path, core::kDataLimit);
   const Header header = checked_header(bytes, path);
   if (header.describer_checksum != describer_checksum) {
     refuse(path, fmt::format("was written by describer {:016x}; expected {:016x}, the one of these "

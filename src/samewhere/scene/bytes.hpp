@@ -86,6 +86,17 @@ class ByteWriter {
   std::string bytes_;
 };
 
+// What a value takes that holds no list and nothing optional.
+template <class T>
+std::size_t min_bytes() {
+  static const std::size_t size = [] {
+    ByteWriter writer;
+    writer(T{});
+    return writer.bytes().size();
+  }();
+  return size;
+}
+
 // Throws InputError, which begins with `where`, if the bytes end too early or too late.
 class ByteReader {
  public:
@@ -116,9 +127,9 @@ class ByteReader {
     left_.remove_prefix(size);
     return taken;
   }
-  // Every element takes a byte at least.
-  std::size_t checked_count(std::uint64_t count) const {
-    if (count > left_.size()) damaged("is cut short");
+  // Of elements that take so many bytes each at least: no memory is taken for what is not there.
+  std::size_t checked_count(std::uint64_t count, std::size_t min_bytes) const {
+    if (count > left_.size() / min_bytes) damaged("is cut short");
     return static_cast<std::size_t>(count);
   }
 
@@ -129,6 +140,7 @@ class ByteReader {
   void get(bool& value) {
     std::uint8_t byte = 0;
     get(byte);
+    if (byte > 1) damaged("holds a flag that is neither 0 nor 1");
     value = byte != 0;
   }
   template <class Tag>
@@ -145,7 +157,7 @@ class ByteReader {
   void get(std::vector<T, Memory>& values) {
     std::uint64_t count = 0;
     get(count);
-    values.resize(checked_count(count));
+    values.resize(checked_count(count, min_bytes<T>()));
     row(values.data(), values.size());
   }
   template <class T>
@@ -168,7 +180,8 @@ class ByteReader {
     int columns = 0;
     (*this)(rows, columns);
     if (rows < 0 || columns < 0) damaged("holds a matrix of negative size");
-    checked_count(static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns));
+    if (columns == 0) rows = 0;
+    checked_count(static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns), 1);
     bytes = cv::Mat(rows, columns, CV_8U);
     for (int y = 0; y < rows; ++y) row(bytes.ptr(y), static_cast<std::size_t>(columns));
   }

@@ -8,56 +8,12 @@
 #include <samewhere/scene/map_check.hpp>
 #include <samewhere/scene/map_file.hpp>
 #include <samewhere/scene/map_rows.hpp>
+#include <samewhere/scene/map_tables.hpp>
+#include <samewhere/scene/map_values.hpp>
 #include <samewhere/scene/row_file.hpp>
 
 namespace samewhere::scene {
 namespace {
-
-constexpr char kHeader[] = "header";
-constexpr char kState[] = "state";
-constexpr char kRig[] = "rig";
-constexpr char kKeyframe[] = "keyframe";
-constexpr char kView[] = "view";    // of keyframes, same numbers; never changes
-constexpr char kSlots[] = "slots";  // of keyframes, same numbers
-constexpr char kLandmark[] = "landmark";
-constexpr char kLoop[] = "loop";
-constexpr char kDoubtedLoop[] = "doubted_loop";
-constexpr char kMerge[] = "merge";
-constexpr char kFrame[] = "frame";            // number: the frame's id
-constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
-constexpr char kLedger[] = "ledger";          // bytes: a line of JSON
-constexpr char kThumbnail[] = "thumbnail";    // number: the frame's id; bytes: JPEG
-constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,    kView,
-                                   kSlots,  kLandmark,   kLoop,   kDoubtedLoop, kMerge,
-                                   kFrame,  kDescriptor, kLedger, kThumbnail};
-
-// 5: thumbnails.
-constexpr std::int64_t kMapFileVersion = 6;
-constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion, kTables};
-
-// How much a commit left: rows that went missing are missed (but thumbnails, on which nothing
-// hangs).
-struct State {
-  std::uint64_t map_number = 0;
-  std::uint64_t num_settings = 0;
-  std::uint64_t num_rigs = 0;
-  std::uint64_t num_keyframes = 0;
-  std::uint64_t num_landmarks = 0;
-  std::uint64_t num_loops = 0;
-  std::uint64_t num_doubted_loops = 0;
-  std::uint64_t num_merges = 0;
-  std::uint64_t num_frames = 0;
-  std::uint64_t num_descriptors = 0;
-  std::uint64_t num_ledger_rows = 0;
-  std::optional<core::FrameId> last_frame;
-};
-
-template <class Archive>
-void fields(Archive& archive, Value<Archive, State>& state) {
-  archive(state.map_number, state.num_settings, state.num_rigs, state.num_keyframes,
-          state.num_landmarks, state.num_loops, state.num_doubted_loops, state.num_merges,
-          state.num_frames, state.num_descriptors, state.num_ledger_rows, state.last_frame);
-}
 
 std::string view_bytes(const features::View& view, std::uint64_t rig) {
   ByteWriter writer;
@@ -67,51 +23,101 @@ std::string view_bytes(const features::View& view, std::uint64_t rig) {
 }
 
 template <class T>
-T value_of(std::string_view bytes, const std::string& row) {
+T value_of(const RowFile::Row& row) {
   T value{};
-  ByteReader reader(bytes, row);
+  ByteReader reader(row.bytes, row.name);
   reader(value);
   reader.finish();
   return value;
 }
 
+std::optional<core::FrameId> last_frame(const MapExtras& extras) {
+  return extras.frames.empty() ? std::nullopt : std::optional(extras.frames.back().frame);
+}
+
 std::int64_t row_number(core::FrameId id) { return static_cast<std::int64_t>(id.value()); }
+
+void refuse_damage(const char* complaint, const RowFile::Row& row) {
+  if (complaint != nullptr)
+    throw core::InputError(fmt::format("{} is damaged: it {}", row.name, complaint));
+}
+
+// What could not be read again is not written.
+template <class T>
+void require_readable(const std::filesystem::path& path, const char* table, std::int64_t number,
+                      const T& value) {
+  if (const char* complaint = complaint_on(value))
+    throw core::InputError(
+        fmt::format("{}: {} {} cannot be saved: it {}", path.string(), table, number, complaint));
+}
+
+// Settings are printed: a terminal would obey control characters (ASCII's, and those of Latin-1 as
+// UTF-8 has them).
+bool is_printed(std::string_view text) {
+  constexpr std::size_t kMaxLength = 4096;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const bool is_after_c2 = i > 0 && static_cast<unsigned char>(text[i - 1]) == 0xc2;
+    if (c < ' ' || c == 0x7f || (is_after_c2 && c < 0xa0)) return false;
+  }
+  return text.size() <= kMaxLength;
+}
+
+// Whose numbers can be used.
+template <class T>
+T checked_value_of(const RowFile::Row& row) {
+  T value = value_of<T>(row);
+  refuse_damage(complaint_on(value), row);
+  return value;
+}
+
+// The same of what is numbered by its frame.
+template <class T>
+T value_of_frame(const RowFile::Row& row) {
+  T value = checked_value_of<T>(row);
+  if (row_number(value.frame) != row.number) refuse_damage("is of another frame", row);
+  return value;
+}
 
 }  // namespace
 
 class MapFile::Content {
  public:
-  explicit Content(RowFile file) : file_(std::move(file)) {}
+  // Of a new file.
+  Content(const std::filesystem::path& path, const MapHeader& header);
+  // Of one that is there.
+  Content(const std::filesystem::path& path, OpenMode mode);
 
-  void write_header(const MapHeader& header);
-  void read_header();
   const MapHeader& header() const { return header_; }
   const std::filesystem::path& path() const { return file_.path(); }
 
   void begin_writing() { file_.begin_writing(); }
   StoredMap load();
+  std::vector<std::string> ledger();
   std::optional<std::string> thumbnail(core::FrameId frame) {
     return file_.find(kThumbnail, row_number(frame));
   }
+  // On a full disk a second time, with the room that the log took.
   void commit(const MapVersion& after, const MapExtras& extras);
 
  private:
+  void write(const MapVersion& after, const MapExtras& extras);
   // Since this one has read or written it: for what was not locked out (a network drive).
   void require_unchanged();
-  State read_state();
+  MapState read_state();
   void read_rigs();
-  features::View read_view(std::string_view bytes, const std::string& row);
+  features::View read_view(const RowFile::Row& row);
   void read_keyframes(MapVersion& map);
   void read_extras(MapExtras& extras);
 
-  void write_keyframes(const MapVersion& after, State& state);
-  void write_landmarks(const MapVersion& after, State& state);
+  void write_keyframes(const MapVersion& after, MapState& state);
+  void write_landmarks(const MapVersion& after, MapState& state);
   void read_loops(const char* table, std::uint64_t count, std::vector<LoopEdge>& loops);
   void write_loops(const char* table, const std::vector<LoopEdge>& before,
                    const std::vector<LoopEdge>& after);
-  void write_merges(const MapVersion& after, State& state);
-  void write_extras(const MapExtras& extras, State& state);
-  std::uint64_t rig_number(const core::Rig& rig, State& state);
+  void write_merges(const MapVersion& after, MapState& state);
+  void write_extras(const MapExtras& extras, MapState& state);
+  std::uint64_t rig_number(const core::Rig& rig, MapState& state);
   template <class T>
   void put_change(const char* table, std::int64_t number, const T* before, const T& now);
 
@@ -119,65 +125,70 @@ class MapFile::Content {
   MapHeader header_;
   // As of the last commit.
   bool is_loaded_ = false;
-  State state_;
+  MapState state_;
   MapVersion map_;
   std::vector<std::shared_ptr<const core::Rig>> rigs_;
   core::PagedMemory feature_memory_;
 };
 
-void MapFile::Content::write_header(const MapHeader& header) {
-  file_.begin_writing();
-  Transaction transaction = file_.transaction();
-  std::int64_t number = 0;
-  for (const auto& [name, value] : header) file_.put(kHeader, number++, name + "=" + value);
+MapFile::Content::Content(const std::filesystem::path& path, const MapHeader& header)
+    : file_(RowFile::create(path, kMapKind,
+                            [&header](RowFile& file) {
+                              std::int64_t number = 0;
+                              for (const auto& [name, value] : header)
+                                file.put(kHeader, number++, name + "=" + value);
+                              file.put(kState, 0,
+                                       bytes_of(MapState{.num_settings = header.size()}));
+                            })),
+      header_(header),
+      is_loaded_(true) {
   state_.num_settings = header.size();
-  file_.put(kState, 0, bytes_of(state_));
-  transaction.commit();
-  header_ = header;
-  is_loaded_ = true;
 }
 
-void MapFile::Content::read_header() {
-  const State state = read_state();
-  file_.read(kHeader, state.num_settings, [&](std::string_view bytes, const std::string&) {
-    const auto equals = bytes.find('=');
-    header_.emplace(bytes.substr(0, equals), bytes.substr(equals + 1));
+MapFile::Content::Content(const std::filesystem::path& path, OpenMode mode)
+    : file_(RowFile::open(path, kMapKind, mode)) {
+  const MapState state = read_state();
+  file_.read_list(kHeader, state.num_settings, [&](const RowFile::Row& row) {
+    const auto equals = row.bytes.find('=');
+    if (equals == row.bytes.npos || !is_printed(row.bytes))
+      refuse_damage("is no setting with its value", row);
+    header_.emplace(row.bytes.substr(0, equals), row.bytes.substr(equals + 1));
   });
 }
 
-State MapFile::Content::read_state() {
-  State state;
-  file_.read(kState, 1, [&](std::string_view bytes, const std::string& row) {
-    state = value_of<State>(bytes, row);
-  });
+MapState MapFile::Content::read_state() {
+  MapState state;
+  file_.read_list(kState, 1, [&](const RowFile::Row& row) { state = value_of<MapState>(row); });
   return state;
 }
 
 void MapFile::Content::read_rigs() {
   rigs_.clear();
-  file_.read(kRig, state_.num_rigs, [&](std::string_view bytes, const std::string& row) {
-    rigs_.push_back(std::make_shared<const core::Rig>(value_of<core::Rig>(bytes, row)));
+  file_.read_list(kRig, state_.num_rigs, [&](const RowFile::Row& row) {
+    rigs_.push_back(std::make_shared<const core::Rig>(checked_value_of<core::Rig>(row)));
   });
 }
 
 void MapFile::Content::read_loops(const char* table, std::uint64_t count,
                                   std::vector<LoopEdge>& loops) {
-  file_.read(table, count, [&](std::string_view bytes, const std::string& row) {
-    loops.push_back(value_of<LoopEdge>(bytes, row));
+  file_.read_list(table, count, [&](const RowFile::Row& row) {
+    loops.push_back(checked_value_of<LoopEdge>(row));
   });
 }
 
-features::View MapFile::Content::read_view(std::string_view bytes, const std::string& row) {
+features::View MapFile::Content::read_view(const RowFile::Row& row) {
   features::View view;
   std::uint64_t rig = 0;
-  auto features = std::make_shared<features::Features>();
-  ByteReader reader(bytes, row);
+  const auto features = std::make_shared<features::Features>();
+  ByteReader reader(row.bytes, row.name);
   reader(view.frame, view.stamp_s, rig, view.image_size_px.width, view.image_size_px.height,
          *features);
   reader.finish();
-  if (rig >= rigs_.size()) throw core::InputError(row + " is damaged: its rig is not there");
+  if (rig >= rigs_.size()) throw core::InputError(row.name + " is damaged: its rig is not there");
   view.rig = rigs_[rig];
-  view.features = features::paged(std::move(features), feature_memory_);
+  view.features = features;
+  refuse_damage(complaint_on(view), row);
+  view.features = features::paged(view.features, feature_memory_);
   leave_memory(*view.features);
   return view;
 }
@@ -185,31 +196,34 @@ features::View MapFile::Content::read_view(std::string_view bytes, const std::st
 void MapFile::Content::read_keyframes(MapVersion& map) {
   const std::uint64_t count = state_.num_keyframes;
   std::vector<Keyframe> keyframes;
-  file_.read(kKeyframe, count, [&](std::string_view bytes, const std::string& row) {
-    keyframes.push_back(value_of<Keyframe>(bytes, row));
+  file_.read_list(kKeyframe, count, [&](const RowFile::Row& row) {
+    keyframes.push_back(checked_value_of<Keyframe>(row));
   });
   std::size_t next = 0;
-  file_.read(kView, count, [&](std::string_view bytes, const std::string& row) {
-    keyframes[next++].view = read_view(bytes, row);
-  });
+  file_.read_list(kView, count,
+                  [&](const RowFile::Row& row) { keyframes[next++].view = read_view(row); });
   next = 0;
-  file_.read(kSlots, count, [&](std::string_view bytes, const std::string& row) {
-    keyframes[next++].slots = value_of<std::vector<core::LandmarkId>>(bytes, row);
+  file_.read_list(kSlots, count, [&](const RowFile::Row& row) {
+    keyframes[next++].slots = value_of<std::vector<core::LandmarkId>>(row);
   });
   for (Keyframe& keyframe : keyframes) map.keyframes.push_back(std::move(keyframe));
 }
 
 void MapFile::Content::read_extras(MapExtras& extras) {
-  file_.read(kFrame, state_.num_frames, [&](std::string_view bytes, const std::string& row) {
-    extras.frames.push_back(value_of<core::FramePose>(bytes, row));
+  file_.read(kFrame, state_.num_frames, [&](const RowFile::Row& row) {
+    extras.frames.push_back(value_of_frame<core::FramePose>(row));
   });
-  file_.read(kDescriptor, state_.num_descriptors,
-             [&](std::string_view bytes, const std::string& row) {
-               extras.descriptors.push_back(value_of<core::Descriptor>(bytes, row));
-             });
-  file_.read(kLedger, state_.num_ledger_rows, [&](std::string_view bytes, const std::string&) {
-    extras.ledger.emplace_back(bytes);
+  file_.read(kDescriptor, state_.num_descriptors, [&](const RowFile::Row& row) {
+    extras.descriptors.push_back(value_of_frame<core::Descriptor>(row));
   });
+  extras.ledger = ledger();
+}
+
+std::vector<std::string> MapFile::Content::ledger() {
+  std::vector<std::string> rows;
+  file_.read_list(kLedger, read_state().num_ledger_rows,
+                  [&](const RowFile::Row& row) { rows.emplace_back(row.bytes); });
+  return rows;
 }
 
 StoredMap MapFile::Content::load() {
@@ -219,17 +233,21 @@ StoredMap MapFile::Content::load() {
   StoredMap stored;
   stored.map.number = state_.map_number;
   read_keyframes(stored.map);
-  file_.read(kLandmark, state_.num_landmarks, [&](std::string_view bytes, const std::string& row) {
-    stored.map.landmarks.push_back(value_of<Landmark>(bytes, row));
+  file_.read_list(kLandmark, state_.num_landmarks, [&](const RowFile::Row& row) {
+    stored.map.landmarks.push_back(checked_value_of<Landmark>(row));
   });
   read_loops(kLoop, state_.num_loops, stored.map.loops);
   read_loops(kDoubtedLoop, state_.num_doubted_loops, stored.map.doubted_loops);
-  file_.read(kMerge, state_.num_merges, [&](std::string_view bytes, const std::string& row) {
-    stored.map.merges.push_back(value_of<Merge>(bytes, row));
+  file_.read_list(kMerge, state_.num_merges, [&](const RowFile::Row& row) {
+    stored.map.merges.push_back(value_of<Merge>(row));
   });
   read_extras(stored.extras);
   moment.commit();
   check_map(stored.map, path().string());
+  check_extras(stored, path().string());
+  if (state_.last_frame != last_frame(stored.extras))
+    throw core::InputError(path().string() +
+                           ": is damaged: its last frame is another than it says");
   map_ = stored.map;
   is_loaded_ = true;
   return stored;
@@ -255,10 +273,13 @@ template <class T>
 void MapFile::Content::put_change(const char* table, std::int64_t number, const T* before,
                                   const T& now) {
   const std::string bytes = bytes_of(now);
-  if (before == nullptr || bytes != bytes_of(*before)) file_.put(table, number, bytes);
+  if (before != nullptr && bytes == bytes_of(*before)) return;
+  require_readable(path(), table, number, now);
+  file_.put(table, number, bytes);
 }
 
-std::uint64_t MapFile::Content::rig_number(const core::Rig& rig, State& state) {
+std::uint64_t MapFile::Content::rig_number(const core::Rig& rig, MapState& state) {
+  require_readable(path(), kRig, static_cast<std::int64_t>(rigs_.size()), rig);
   const std::string bytes = bytes_of(rig);
   for (std::size_t i = 0; i < rigs_.size(); ++i) {
     if (rigs_[i].get() == &rig || bytes_of(*rigs_[i]) == bytes) return i;
@@ -268,18 +289,19 @@ std::uint64_t MapFile::Content::rig_number(const core::Rig& rig, State& state) {
   return state.num_rigs++;
 }
 
-void MapFile::Content::write_keyframes(const MapVersion& after, State& state) {
+void MapFile::Content::write_keyframes(const MapVersion& after, MapState& state) {
   each_change(map_.keyframes, after.keyframes,
               [&](std::int64_t number, const Keyframe* before, const Keyframe& now) {
                 put_change(kKeyframe, number, before, now);
                 put_change(kSlots, number, before ? &before->slots : nullptr, now.slots);
-                if (before == nullptr)
-                  file_.put(kView, number, view_bytes(now.view, rig_number(*now.view.rig, state)));
+                if (before != nullptr) return;
+                require_readable(path(), kView, number, now.view);
+                file_.put(kView, number, view_bytes(now.view, rig_number(*now.view.rig, state)));
               });
   state.num_keyframes = after.keyframes.size();
 }
 
-void MapFile::Content::write_landmarks(const MapVersion& after, State& state) {
+void MapFile::Content::write_landmarks(const MapVersion& after, MapState& state) {
   each_change(map_.landmarks, after.landmarks,
               [&](std::int64_t number, const Landmark* before, const Landmark& now) {
                 put_change(kLandmark, number, before, now);
@@ -295,7 +317,7 @@ void MapFile::Content::write_loops(const char* table, const std::vector<LoopEdge
   file_.remove_from(table, static_cast<std::int64_t>(after.size()));
 }
 
-void MapFile::Content::write_merges(const MapVersion& after, State& state) {
+void MapFile::Content::write_merges(const MapVersion& after, MapState& state) {
   each_change(map_.merges, after.merges,
               [&](std::int64_t number, const Merge* before, const Merge& now) {
                 put_change(kMerge, number, before, now);
@@ -304,14 +326,16 @@ void MapFile::Content::write_merges(const MapVersion& after, State& state) {
   state.num_merges = after.merges.size();
 }
 
-void MapFile::Content::write_extras(const MapExtras& extras, State& state) {
+void MapFile::Content::write_extras(const MapExtras& extras, MapState& state) {
   for (const core::FramePose& frame : extras.frames) {
+    require_readable(path(), kFrame, row_number(frame.frame), frame);
     file_.put(kFrame, row_number(frame.frame), bytes_of(frame));
     if (state.last_frame && frame.frame <= *state.last_frame) continue;
     state.last_frame = frame.frame;
     ++state.num_frames;
   }
   for (const core::Descriptor& descriptor : extras.descriptors) {
+    require_readable(path(), kDescriptor, row_number(descriptor.frame), descriptor);
     file_.put(kDescriptor, row_number(descriptor.frame), bytes_of(descriptor));
     ++state.num_descriptors;
   }
@@ -333,7 +357,18 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
   core::require(after.keyframes.size() >= map_.keyframes.size() &&
                     after.landmarks.size() >= map_.landmarks.size(),
                 "a map file is given a later version of its map");
-  State state = state_;
+  try {
+    write(after, extras);
+  } catch (const NoSpace&) {
+    if (!file_.shrink_log()) throw;
+    write(after, extras);
+  }
+}
+
+// Everything or, if it throws, nothing.
+void MapFile::Content::write(const MapVersion& after, const MapExtras& extras) {
+  rigs_.resize(state_.num_rigs);  // without those of a commit that failed
+  MapState state = state_;
   file_.begin_writing();
   Transaction transaction = file_.transaction();
   require_unchanged();
@@ -347,7 +382,7 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
   write_extras(extras, state);
   state.map_number = after.number;
   file_.put(kState, 0, bytes_of(state));
-  transaction.commit();
+  file_.commit(transaction);
   state_ = state;
   map_ = after;
 }
@@ -358,16 +393,12 @@ MapFile& MapFile::operator=(MapFile&&) noexcept = default;
 MapFile::~MapFile() = default;
 
 MapFile MapFile::create(const std::filesystem::path& path, const MapHeader& header) {
-  auto content = std::make_unique<Content>(RowFile::create(path, kMapKind));
-  content->write_header(header);
-  return MapFile(std::move(content));
+  return MapFile(std::make_unique<Content>(path, header));
 }
 
 MapFile MapFile::open(const std::filesystem::path& path, MapAccess access) {
   const OpenMode mode = access == MapAccess::kRead ? OpenMode::kRead : OpenMode::kWrite;
-  auto content = std::make_unique<Content>(RowFile::open(path, kMapKind, mode));
-  content->read_header();
-  return MapFile(std::move(content));
+  return MapFile(std::make_unique<Content>(path, mode));
 }
 
 const MapHeader& MapFile::header() const { return content_->header(); }
@@ -385,6 +416,8 @@ void MapFile::require_same_settings(const MapHeader& expected) const {
 void MapFile::begin_writing() { content_->begin_writing(); }
 
 StoredMap MapFile::load() { return content_->load(); }
+
+std::vector<std::string> MapFile::ledger() { return content_->ledger(); }
 
 std::optional<std::string> MapFile::thumbnail(core::FrameId frame) {
   return content_->thumbnail(frame);

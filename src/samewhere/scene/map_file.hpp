@@ -65,9 +65,13 @@ class MapFile {
   // be written. Before this the file keeps its bytes.
   void begin_writing();
 
-  // Everything but the thumbnails, exactly as it was committed. Throws InputError naming what is
-  // damaged or missing.
+  // Everything but the thumbnails, exactly as it was committed. The file may come from anywhere:
+  // every number is checked before it is used (map_values.hpp), and so are all links between rows
+  // (map_check.hpp). Throws InputError naming what is damaged or missing.
   StoredMap load();
+
+  // The judged candidates alone, as StoredMap has them.
+  std::vector<std::string> ledger();
 
   // The picture of the frame, if there is one. Throws InputError if it is damaged.
   std::optional<std::string> thumbnail(core::FrameId frame);

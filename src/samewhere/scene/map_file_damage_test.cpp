@@ -53,6 +53,7 @@ TEST_F(MapFiles, AFullDiskIsSaidAndTheLastCommitStays) {
       }
     });
   }
+  EXPECT_FALSE(std::filesystem::exists(path("m.sw-wal"))) << "its space is given back";
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_THAT(found, HasSubstr("m.sw: cannot be")) << found;

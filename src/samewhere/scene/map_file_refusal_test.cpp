@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <samewhere/core/file.hpp>
-#include <samewhere/scene/sqlite.hpp>
+#include <samewhere/scene/test_forged_map.hpp>
 #include <samewhere/scene/test_map_file.hpp>
 
 namespace samewhere::scene {
@@ -97,9 +97,8 @@ TEST_F(MapFiles, WhatAnotherHasWrittenMeanwhileIsNotWrittenOver) {
   }
   MapFile file = MapFile::open(path(), MapAccess::kExtend);
   file.load();
-  Database other(path(), OpenMode::kWrite);
-  other.execute("ATTACH '" + path("later.sw").string() + "' AS later");
-  other.execute("INSERT OR REPLACE INTO state SELECT * FROM later.state");
+  run_sql(path(), "ATTACH '" + path("later.sw").string() +
+                      "' AS later; INSERT OR REPLACE INTO state SELECT * FROM later.state");
   EXPECT_THAT(complaint([&] { file.commit(map, {}); }),
               HasSubstr("m.sw: another program has written to this map meanwhile"));
 }

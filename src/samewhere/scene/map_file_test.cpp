@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <gmock/gmock.h>
 
 #include <samewhere/core/file.hpp>
@@ -90,6 +92,17 @@ TEST_F(MapFiles, AClosedMapIsOnePlainFile) {
                                std::filesystem::perm_options::remove);
   expect_same(MapFile::open(path()).load().map, map);
   std::filesystem::permissions(folder_, before);
+}
+
+TEST_F(MapFiles, WhatCouldNotBeReadAgainIsNotWritten) {
+  const MapVersion map = write_small_map();
+  MapFile file = MapFile::open(path(), MapAccess::kExtend);
+  file.load();
+  MapVersion odd = map;
+  odd.landmarks.edit(3).position_in_anchor.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(complaint([&] { file.commit(odd, {}); }),
+            path().string() + ": landmark 3 cannot be saved: it has a position that is none");
+  expect_same(MapFile::open(path()).load().map, map);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ void fields(Archive& archive, Value<Archive, core::PinholeRadtan>& camera) {
           camera.k1, camera.k2, camera.p1, camera.p2, camera.k3);
 }
 
-// One model today; with a second, its number comes first and kMapFileVersion rises.
+// Of a view in a map every camera is of this model (core/rig.hpp), without k4 k5 k6.
 template <class Archive>
 void fields(Archive& archive, Value<Archive, core::Camera>& camera) {
   archive(std::get<core::PinholeRadtan>(camera));

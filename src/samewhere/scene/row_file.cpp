@@ -1,9 +1,17 @@
+#include <cerrno>
+#include <cstdlib>
 #include <fstream>
+#include <set>
+#include <system_error>
+#include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <samewhere/core/checksum.hpp>
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/text_file.hpp>
 #include <samewhere/scene/row_file.hpp>
 
 namespace samewhere::scene {
@@ -27,49 +35,35 @@ bool is_sqlite(const std::filesystem::path& path) {
   return file && start == kSqlite;
 }
 
+std::string table_sql(const char* table) {
+  return fmt::format(
+      "CREATE TABLE {} (number INTEGER PRIMARY KEY, bytes BLOB NOT NULL, checksum INTEGER NOT "
+      "NULL)",
+      table);
+}
+
 void make_tables(Database& database, const FileKind& kind) {
-  database.execute("PRAGMA journal_mode=WAL");
   Transaction transaction(database);
-  for (const char* table : kind.tables) {
-    database.execute(
-        fmt::format("CREATE TABLE {} (number INTEGER PRIMARY KEY, bytes BLOB NOT NULL, "
-                    "checksum INTEGER NOT NULL)",
-                    table));
-  }
-  // last: a file without them is none of ours
+  for (const char* table : kind.tables) database.execute(table_sql(table));
   database.execute(fmt::format("PRAGMA application_id={}", kind.magic));
   database.execute(fmt::format("PRAGMA user_version={}", kind.version));
   transaction.commit();
 }
 
-void remove_files(const std::filesystem::path& path) {
-  for (const char* suffix : {"", "-wal", "-shm"}) {
+// What a file of this name that is gone has left: it would be taken for the log of a new one.
+void remove_logs(const std::filesystem::path& path) {
+  for (const char* suffix : {"-wal", "-shm", "-journal"}) {
     std::error_code ignored;
-    std::filesystem::remove(path.string() + suffix, ignored);
+    const std::string log = path.string() + suffix;
+    if (std::filesystem::is_regular_file(log, ignored)) std::filesystem::remove(log, ignored);
   }
 }
 
-}  // namespace
+// A million keyframes take less. It bounds the time and the memory that a look at all pages takes.
+constexpr std::uintmax_t kMaxFile_bytes = std::uintmax_t{64} << 30;
 
-RowFile::RowFile(const std::filesystem::path& path, OpenMode mode, std::unique_ptr<WriterLock> lock)
-    : lock_(std::move(lock)), database_(std::make_unique<Database>(path, mode)) {
-  if (lock_) database_->execute("PRAGMA synchronous=NORMAL");
-}
-
-RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind) {
-  if (std::filesystem::exists(path)) refuse(path, "is there already; expected a new file");
-  auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsMade);
-  try {
-    RowFile file(path, OpenMode::kCreate, std::move(lock));
-    make_tables(*file.database_, kind);
-    return file;
-  } catch (const core::InputError&) {
-    remove_files(path);
-    throw;
-  }
-}
-
-RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode) {
+// Before SQLite touches it: a pipe would never end to be opened.
+void check_is_file(const std::filesystem::path& path, const FileKind& kind) {
   std::error_code why_not;
   if (!std::filesystem::exists(path, why_not)) {
     refuse(path, why_not ? "cannot be opened: " + why_not.message()
@@ -77,23 +71,172 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
   }
   if (!std::filesystem::is_regular_file(path) || !is_sqlite(path))
     refuse(path, fmt::format("is no {}", kind.name));
-  auto lock = mode == OpenMode::kRead
-                  ? nullptr
-                  : std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
-  RowFile file(path, mode, std::move(lock));
-  if (file.database_->number("PRAGMA application_id") != kind.magic)
-    refuse(path, fmt::format("is no {} but another SQLite file", kind.name));
-  const std::int64_t version = file.database_->number("PRAGMA user_version");
-  if (version != kind.version) {
-    refuse(path, fmt::format("is a {} of version {}; expected version {}", kind.name, version,
-                             kind.version));
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  if (size > kMaxFile_bytes) {
+    refuse(path, fmt::format("is damaged: it has {} GiB; expected {} at most", size >> 30,
+                             kMaxFile_bytes >> 30));
   }
+}
+
+void check_kind(Database& database, const FileKind& kind) {
+  if (database.number("PRAGMA application_id") != kind.magic)
+    refuse(database.path(), fmt::format("is no {} but another SQLite file", kind.name));
+  const std::int64_t version = database.number("PRAGMA user_version");
+  if (version == kind.version) return;
+  refuse(database.path(), fmt::format("is a {} of version {}; expected version {}", kind.name,
+                                      version, kind.version));
+}
+
+// Nothing but the tables, each as it was made: no trigger, view, index or column beside them.
+void check_schema(Database& database, const FileKind& kind) {
+  std::set<std::string> expected;
+  for (const char* table : kind.tables) expected.insert(table_sql(table));
+  Statement select = database.prepare("SELECT type, name, sql FROM sqlite_schema");
+  while (select.step()) {
+    if (expected.erase(std::string(select.bytes(2))) == 1) continue;
+    refuse(database.path(), fmt::format("is damaged: it has a {} {} that no {} has",
+                                        core::printable(std::string(select.bytes(0))),
+                                        core::printable(std::string(select.bytes(1))), kind.name));
+  }
+  if (!expected.empty())
+    refuse(database.path(), fmt::format("is damaged: it lacks {} of its tables", expected.size()));
+}
+
+// All of it, down to the disk. Returns the system's error number, or 0.
+int write_whole(int file, std::string_view bytes) {
+  const ssize_t num_written = ::write(file, bytes.data(), bytes.size());
+  if (num_written < 0) return errno;
+  if (static_cast<std::size_t>(num_written) < bytes.size()) return ENOSPC;
+  return ::fsync(file) == 0 ? 0 : errno;
+}
+
+// Gives the draft its name, which no other file may have: by a link, or where the file system has
+// none, by another name for it.
+int give_name(const std::string& draft, const std::filesystem::path& path) {
+  if (::link(draft.c_str(), path.c_str()) == 0) return 0;
+  const int error = errno;
+  const bool has_no_links = error == EPERM || error == EOPNOTSUPP || error == ENOSYS;
+  if (!has_no_links || std::filesystem::exists(path)) return error;
+  return ::rename(draft.c_str(), path.c_str()) == 0 ? 0 : errno;
+}
+
+// A new file with these bytes, whole or not at all.
+void publish(const std::filesystem::path& path, std::string_view bytes) {
+  const std::string draft = fmt::format("{}.{}.new", path.string(), ::getpid());
+  const int file =
+      ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+  int error = file < 0 ? errno : write_whole(file, bytes);
+  if (file >= 0) ::close(file);
+  if (error == 0) error = give_name(draft, path);
+  ::unlink(draft.c_str());
+  if (error == 0) return;
+  if (error == EEXIST) refuse(path, "is there already; expected a new file");
+  refuse(path, fmt::format("cannot be opened to be written ({})",
+                           std::generic_category().message(error)));
+}
+
+// A folder of this program alone, removed with its last owner.
+std::shared_ptr<const std::filesystem::path> temporary_folder(const std::filesystem::path& of) {
+  std::string name = (std::filesystem::temp_directory_path() / "samewhere-map-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) refuse(of, "cannot be copied to be put in order");
+  return {new std::filesystem::path(name), [](const std::filesystem::path* folder) {
+            std::error_code ignored;
+            std::filesystem::remove_all(*folder, ignored);
+            delete folder;
+          }};
+}
+
+// With what a killed program left beside it.
+void copy_files(const std::filesystem::path& from, const std::filesystem::path& to) {
+  for (const char* suffix : {"", "-wal", "-journal"}) {
+    std::error_code error;
+    const std::string part = from.string() + suffix;
+    if (!std::filesystem::exists(part, error)) continue;
+    if (!std::filesystem::copy_file(part, to.string() + suffix, error))
+      refuse(from, "cannot be copied to be put in order: " + error.message());
+  }
+}
+
+// What was begun is taken back, what was committed is written into the file itself.
+void put_in_order(const std::filesystem::path& path, const std::filesystem::path& location) {
+  Database database(path, location, OpenMode::kWrite);
+  database.number("PRAGMA application_id");  // takes back
+  database.execute("PRAGMA journal_mode=DELETE");
+}
+
+}  // namespace
+
+RowFile::RowFile(std::unique_ptr<Database> database, std::unique_ptr<WriterLock> lock)
+    : lock_(std::move(lock)), database_(std::move(database)) {
+  if (lock_) database_->execute("PRAGMA synchronous=NORMAL");
+}
+
+RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind, const Fill& fill) {
+  RowFile draft(std::make_unique<Database>(Database::in_memory(path)), nullptr);
+  make_tables(*draft.database_, kind);
+  fill(draft);
+  publish(path, draft.database_->file_bytes());
+  try {
+    auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
+    remove_logs(path);
+    RowFile file(std::make_unique<Database>(path, OpenMode::kWrite), std::move(lock));
+    file.begin_writing();
+    return file;
+  } catch (const core::InputError&) {
+    remove_logs(path);
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    throw;
+  }
+}
+
+// A program may have been killed while it wrote.
+RowFile RowFile::open_to_read(const std::filesystem::path& path) {
+  const auto opened = [&](const std::filesystem::path& location) {
+    auto database = std::make_unique<Database>(path, location, OpenMode::kRead);
+    database->number("PRAGMA application_id");  // the first look at the file
+    return RowFile(std::move(database), nullptr);
+  };
+  try {
+    return opened(path);
+  } catch (const NeedsRepair&) {
+    if (WriterLock::is_held(path)) throw;
+  }
+  try {
+    const WriterLock lock(path, WriterLock::File::kIsThere);
+    put_in_order(path, path);
+  } catch (const core::InputError&) {
+    // its folder cannot be written
+    const auto folder = temporary_folder(path);
+    const std::filesystem::path copy = *folder / "map.sw";
+    copy_files(path, copy);
+    put_in_order(path, copy);
+    RowFile file = opened(copy);
+    file.copy_ = folder;
+    return file;
+  }
+  return opened(path);
+}
+
+RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode) {
+  check_is_file(path, kind);
+  const auto opened = [&] {
+    if (mode == OpenMode::kRead) return open_to_read(path);
+    auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
+    return RowFile(std::make_unique<Database>(path, mode), std::move(lock));
+  };
+  RowFile file = opened();
+  check_kind(*file.database_, kind);
+  check_schema(*file.database_, kind);
+  file.database_->check_pages();
   return file;
 }
 
 void RowFile::begin_writing() {
   if (has_log_) return;
   database_->execute("PRAGMA journal_mode=WAL");
+  // after a large commit: what is written before it goes into the file
+  database_->execute("PRAGMA journal_size_limit=4194304");
   has_log_ = true;
 }
 
@@ -104,8 +247,24 @@ RowFile::~RowFile() {
     // into one plain file: one with a log needs a folder that can be written, even to be read
     database_->execute("PRAGMA journal_mode=DELETE");
   } catch (const core::InputError&) {
-    // somebody reads it, or the disk is full: the log stays beside the file and is read with it
+    // another program reads it, or the disk is full: the log stays beside the file and is read with
+    // it
   }
+  lock_->give_back_room();
+}
+
+bool RowFile::shrink_log() {
+  constexpr std::int64_t kDone = 0;  // another program may be reading from it
+  return has_log_ && database_->number("PRAGMA wal_checkpoint(TRUNCATE)") == kDone;
+}
+
+void RowFile::commit(Transaction& transaction) {
+  if (lock_) {
+    const std::int64_t num_bytes =
+        database_->number("PRAGMA page_count") * database_->number("PRAGMA page_size");
+    lock_->reserve(static_cast<std::uint64_t>(num_bytes));
+  }
+  transaction.commit();
 }
 
 Statement& RowFile::statement(const std::string& sql) {
@@ -135,6 +294,8 @@ namespace {
 // calls it.
 std::string_view checked_bytes(const Statement& select, const char* table,
                                const std::string& name) {
+  if (select.kind(1) != Kind::kBytes || select.kind(2) != Kind::kNumber)
+    throw core::InputError(name + " is damaged: it holds values of another type");
   const std::string_view bytes = select.bytes(1);
   if (select.number(2) != row_checksum(table, select.number(0), bytes))
     throw core::InputError(name + " is damaged: its checksum does not fit what it holds");
@@ -160,17 +321,28 @@ void RowFile::read(const char* table, std::uint64_t count, const Use& use) {
       fmt::format("SELECT number, bytes, checksum FROM {} ORDER BY number", table));
   std::uint64_t num_read = 0;
   while (select.step()) {
-    const std::string row = name_of(table, select.number(0));
-    const std::string_view bytes = checked_bytes(select, table, row);
+    Row row{select.number(0), {}, name_of(table, select.number(0))};
+    row.bytes = checked_bytes(select, table, row.name);
     if (num_read == count)
       refuse(path(), fmt::format("is damaged: more than {} rows of {}", count, table));
-    use(bytes, row);
+    use(row);
     ++num_read;
   }
   if (num_read != count) {
     refuse(path(),
            fmt::format("is damaged: {} of {} rows of {} are gone", count - num_read, count, table));
   }
+}
+
+void RowFile::read_list(const char* table, std::uint64_t count, const Use& use) {
+  std::int64_t next = 0;
+  read(table, count, [&](const Row& row) {
+    if (row.number != next)
+      throw core::InputError(
+          fmt::format("{} is damaged: it has another number than {}", row.name, next));
+    ++next;
+    use(row);
+  });
 }
 
 }  // namespace samewhere::scene

@@ -24,8 +24,13 @@ struct FileKind {
 // with the path.
 class RowFile {
  public:
-  // A new file; it must not be there. Nothing is left behind if it cannot be made.
-  static RowFile create(const std::filesystem::path& path, const FileKind& kind);
+  // A new file with the rows that `fill` puts into it; it must not be there. It appears under its
+  // name with these rows or not at all, and nothing is left behind if it cannot be made.
+  using Fill = std::function<void(RowFile& file)>;
+  static RowFile create(const std::filesystem::path& path, const FileKind& kind, const Fill& fill);
+  // Of a file from anywhere: its kind, its tables and their columns, and its pages are checked.
+  // What a killed program left is put in order, in place or, where the folder cannot be written, in
+  // a copy.
   static RowFile open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode);
 
   RowFile(RowFile&&) = default;
@@ -36,26 +41,40 @@ class RowFile {
   // was opened keeps its bytes.
   void begin_writing();
   Transaction transaction() { return Transaction(*database_); }
+  // Commits, if the disk has room for all that the file holds then: the log can always be written
+  // into the file, and its own space given back.
+  void commit(Transaction& transaction);
+  // Writes the log into the file, for its room on the disk. Whether it could.
+  bool shrink_log();
   // Adds the row or replaces it.
   void put(const char* table, std::int64_t number, std::string_view bytes);
   void remove_from(const char* table, std::int64_t first_number);
 
-  // Calls `use` for each row, numbers ascending, with the row as a message calls it
-  // ("m.sw: landmark 7"). Throws InputError if a row does not fit its checksum or there are not
-  // `count` of them.
-  using Use = std::function<void(std::string_view bytes, const std::string& row)>;
+  // A row as it is read. `name` is how a message calls it ("m.sw: landmark 7").
+  struct Row {
+    std::int64_t number = 0;
+    std::string_view bytes;
+    std::string name;
+  };
+  // Calls `use` for each row, numbers ascending. Throws InputError if a row does not fit its
+  // checksum or there are not `count` of them.
+  using Use = std::function<void(const Row& row)>;
   void read(const char* table, std::uint64_t count, const Use& use);
+  // The same of rows that are numbered from 0 on without a gap.
+  void read_list(const char* table, std::uint64_t count, const Use& use);
   // One row, or nothing if it is not there. Throws InputError if it does not fit its checksum.
   std::optional<std::string> find(const char* table, std::int64_t number);
 
   const std::filesystem::path& path() const { return database_->path(); }
 
  private:
-  // Without a lock it is read only.
-  RowFile(const std::filesystem::path& path, OpenMode mode, std::unique_ptr<WriterLock> lock);
+  // With a lock it is written.
+  RowFile(std::unique_ptr<Database> database, std::unique_ptr<WriterLock> lock);
+  static RowFile open_to_read(const std::filesystem::path& path);
   Statement& statement(const std::string& sql);
   std::string name_of(const char* table, std::int64_t number) const;
 
+  std::shared_ptr<const void> copy_;  // that is read instead; removed with the last owner
   std::unique_ptr<WriterLock> lock_;  // of who may write; released after the connection
   std::unique_ptr<Database> database_;
   bool has_log_ = false;

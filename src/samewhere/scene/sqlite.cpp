@@ -1,7 +1,8 @@
+#include <utility>
+
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <samewhere/core/errors.hpp>
 #include <samewhere/scene/sqlite.hpp>
 
 namespace samewhere::scene {
@@ -21,11 +22,18 @@ int flags_of(OpenMode mode) {
   return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
 }
 
+// SQLite's messages quote the file.
+std::string printable(std::string_view message) {
+  constexpr std::size_t kMaxLength = 200;
+  std::string text(message.substr(0, kMaxLength));
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
+
 // What the code means to whoever reads the message.
 std::string meaning_of(int code, const char* message) {
   switch (code & 0xff) {
-    case SQLITE_FULL:
-      return "cannot be written: no space left on the disk";
     case SQLITE_IOERR:
       return fmt::format("cannot be read or written: {}", message);
     case SQLITE_READONLY:
@@ -44,18 +52,54 @@ std::string meaning_of(int code, const char* message) {
 
 void Database::Close::operator()(sqlite3* connection) const { sqlite3_close(connection); }
 
-Database::Database(const std::filesystem::path& path, OpenMode mode) : path_(path) {
+Database::Database(const std::filesystem::path& path, OpenMode mode) : Database(path, path, mode) {}
+
+Database::Database(const std::filesystem::path& path, const std::filesystem::path& location,
+                   OpenMode mode)
+    : path_(path), mode_(mode) {
   sqlite3* connection = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &connection, flags_of(mode), nullptr);
+  const int code = sqlite3_open_v2(location.c_str(), &connection, flags_of(mode), nullptr);
   connection_.reset(connection);
   if (code != SQLITE_OK) fail(code);
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_busy_timeout(connection, kBusyTimeout_ms);
+  restrict_to_data();
+}
+
+Database Database::in_memory(const std::filesystem::path& path) {
+  return {path, ":memory:", OpenMode::kCreate};
+}
+
+// As https://sqlite.org/security.html asks for files from elsewhere.
+void Database::restrict_to_data() {
+  constexpr int kOff[] = {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER,
+                          SQLITE_DBCONFIG_ENABLE_VIEW, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION};
+  constexpr std::pair<int, int> kLimits[] = {{SQLITE_LIMIT_LENGTH, kMaxValue_bytes},
+                                             {SQLITE_LIMIT_SQL_LENGTH, 100'000},
+                                             {SQLITE_LIMIT_COLUMN, 16},
+                                             {SQLITE_LIMIT_EXPR_DEPTH, 10},
+                                             {SQLITE_LIMIT_COMPOUND_SELECT, 3},
+                                             {SQLITE_LIMIT_FUNCTION_ARG, 8},
+                                             {SQLITE_LIMIT_ATTACHED, 0},
+                                             {SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 50},
+                                             {SQLITE_LIMIT_VARIABLE_NUMBER, 10},
+                                             {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
+                                             {SQLITE_LIMIT_WORKER_THREADS, 0}};
+  sqlite3_db_config(connection_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  for (const int off : kOff) sqlite3_db_config(connection_.get(), off, 0, nullptr);
+  for (const auto& [limit, value] : kLimits) sqlite3_limit(connection_.get(), limit, value);
+  execute("PRAGMA cell_size_check=ON");
+  execute("PRAGMA mmap_size=0");
 }
 
 void Database::fail(int code) const {
+  if ((code & 0xff) == SQLITE_FULL) throw NoSpace(path_);
   const char* message = connection_ ? sqlite3_errmsg(connection_.get()) : "out of memory";
-  throw core::InputError(path_.string() + ": " + meaning_of(code, message));
+  const std::string text = path_.string() + ": " + meaning_of(code, printable(message).c_str());
+  const int kind = code & 0xff;
+  if (mode_ == OpenMode::kRead && (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN))
+    throw NeedsRepair(text);
+  throw core::InputError(text);
 }
 
 void Database::execute(const std::string& sql) {
@@ -74,6 +118,23 @@ std::int64_t Database::number(const std::string& sql) {
   Statement statement = prepare(sql);
   if (!statement.step()) throw core::InputError(path_.string() + ": is damaged: a number is gone");
   return statement.number(0);
+}
+
+void Database::check_pages() {
+  Statement check = prepare("PRAGMA quick_check(1)");
+  const std::string_view found = check.step() ? check.bytes(0) : "";
+  if (found == "ok") return;
+  // some of its sentences have several lines
+  throw core::InputError(fmt::format("{}: is damaged: {}", path_.string(),
+                                     printable(found.substr(found.rfind('\n') + 1))));
+}
+
+std::string Database::file_bytes() {
+  sqlite3_int64 size = 0;
+  const std::unique_ptr<unsigned char, decltype(&sqlite3_free)> bytes(
+      sqlite3_serialize(connection_.get(), "main", &size, 0), &sqlite3_free);
+  if (!bytes) fail(SQLITE_NOMEM);
+  return {reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(size)};
 }
 
 Statement::Statement(const Database& database, sqlite3_stmt* statement)
@@ -100,6 +161,12 @@ bool Statement::step() {
   sqlite3_reset(statement_.get());
   if (code != SQLITE_DONE) database_->fail(code);
   return false;
+}
+
+Kind Statement::kind(int column) const {
+  const int type = sqlite3_column_type(statement_.get(), column);
+  if (type == SQLITE_INTEGER) return Kind::kNumber;
+  return type == SQLITE_BLOB ? Kind::kBytes : Kind::kOther;
 }
 
 std::int64_t Statement::number(int column) const {

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include <samewhere/core/errors.hpp>
+
 struct sqlite3;
 struct sqlite3_stmt;
 
@@ -13,19 +15,49 @@ namespace samewhere::scene {
 
 enum class OpenMode { kRead, kWrite, kCreate };
 
+// What a row's column holds.
+enum class Kind { kNumber, kBytes, kOther };
+
+// The largest value of a row, bytes: 50 times what a view with the most features (20,000) takes. A
+// file that says more is forged.
+inline constexpr int kMaxValue_bytes = 64 << 20;
+
+// A file that cannot be opened to be read alone: a program was killed while it wrote, and what it
+// left is to be put in order first.
+class NeedsRepair : public core::InputError {
+ public:
+  using core::InputError::InputError;
+};
+
+// The disk is full.
+class NoSpace : public core::InputError {
+ public:
+  explicit NoSpace(const std::filesystem::path& path)
+      : core::InputError(path.string() + ": cannot be written: no space left on the disk") {}
+};
+
 class Statement;
 
-// A connection to an SQLite file. Whatever goes wrong is an InputError of one line that begins with
-// the path.
+// A connection to an SQLite file, which may come from anywhere: nothing in its schema is run
+// (triggers, views, functions), and values and statements have limits. Whatever goes wrong is an
+// InputError of one line that begins with the path.
 class Database {
  public:
   Database(const std::filesystem::path& path, OpenMode mode);
+  // The file lies at `location`; messages call it `path`.
+  Database(const std::filesystem::path& path, const std::filesystem::path& location, OpenMode mode);
+  // One in memory alone, which messages call `path`.
+  static Database in_memory(const std::filesystem::path& path);
 
   // Runs statements that give no rows.
   void execute(const std::string& sql);
   Statement prepare(const std::string& sql);
   // The first column of the first row.
   std::int64_t number(const std::string& sql);
+  // Every page belongs to one thing, and each says what it should. Reads all of the file.
+  void check_pages();
+  // All of it as the bytes of a file.
+  std::string file_bytes();
 
   const std::filesystem::path& path() const { return path_; }
   [[noreturn]] void fail(int code) const;
@@ -34,7 +66,10 @@ class Database {
   struct Close {
     void operator()(sqlite3* connection) const;
   };
+  void restrict_to_data();
+
   std::filesystem::path path_;
+  OpenMode mode_;
   std::unique_ptr<sqlite3, Close> connection_;
 };
 
@@ -50,6 +85,7 @@ class Statement {
   bool step();
 
   // Columns of the row count from 0. Bytes live until the next step().
+  Kind kind(int column) const;
   std::int64_t number(int column) const;
   std::string_view bytes(int column) const;
 

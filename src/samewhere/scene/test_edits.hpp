@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <samewhere/core/random.hpp>
@@ -128,7 +129,7 @@ class RandomEdits {
   void add_loop(const MapVersion& map, Edit& edit) {
     const core::KeyframeId query = any_keyframe(map);
     const core::KeyframeId match = any_keyframe(map);
-    if (!is_live(map.at(query)) || !is_live(map.at(match))) return;
+    if (query == match || !is_live(map.at(query)) || !is_live(map.at(match))) return;
     const core::CandidateId cause(map.number);
     auto& loops = random_.index(3) == 0 ? edit.doubted_loops : edit.loops;
     loops.push_back({query, match, random_pose(random_), random_information(random_), cause});
@@ -153,6 +154,11 @@ class RandomEdits {
   std::set<core::LandmarkId> touched_;  // merged into by this edit
 };
 
+inline std::vector<float> unit_vector(core::Random& random) {
+  const double angle_rad = random.gaussian();
+  return {static_cast<float>(std::cos(angle_rad)), static_cast<float>(std::sin(angle_rad))};
+}
+
 inline MapExtras extras_of(const MapVersion& map, core::Random& random) {
   const features::View& view = map.keyframes.back().view;
   core::FramePose pose{.frame = view.frame, .stamp_s = view.stamp_s, .is_measured = true};
@@ -162,7 +168,7 @@ inline MapExtras extras_of(const MapVersion& map, core::Random& random) {
   pose.num_inliers = static_cast<int>(random.index(500));
   MapExtras extras;
   extras.frames = {pose};
-  extras.descriptors = {{view.frame, {0.6F, static_cast<float>(random.gaussian())}, 77}};
+  extras.descriptors = {{view.frame, unit_vector(random), 77}};
   extras.ledger = {R"({"query": )" + std::to_string(view.frame.index()) + "}"};
   return extras;
 }

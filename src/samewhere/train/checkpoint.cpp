@@ -84,7 +84,7 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path) {
-  const std::string file = core::read_file(path);
+  const std::string file = core::read_file(path, core::kDataLimit);
   if (!file.starts_with(kFormat)) fail(path, "is of another format");
   const std::string_view content = after_line(file);
   if (!file.starts_with(first_line(content))) fail(path, "is damaged or cut short");

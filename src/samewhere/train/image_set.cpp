@@ -65,8 +65,8 @@ OpenSource open_twin(const std::string& name, const Config& config) {
 }
 
 OpenSource open_files(const std::string& name, const Config& config) {
-  const auto recording =
-      std::make_shared<const input::Recording>(input::read_recording(name, input::Config{}));
+  const auto recording = std::make_shared<const input::Recording>(
+      input::read_recording(name, input::Config{.needs_calibration = false}));
   return {.name = name,
           .num_images = static_cast<int>(recording->frames.size()),
           .make = [recording, size = config.input_size](int i) -> std::optional<cv::Mat> {

@@ -180,7 +180,7 @@ PairSet load_pairs(const std::filesystem::path& path, const std::string& made_of
     throw InputError(
         fmt::format("{}: {}; remove it to have the pairs made anew", path.string(), why));
   };
-  const std::string file = core::read_file(path);
+  const std::string file = core::read_file(path, core::kDataLimit);
   if (!file.starts_with(kFormat)) fail("is no file of prepared pairs");
   const std::string_view content = after_line(file);
   if (!file.starts_with(first_line(content))) fail("is damaged or cut short");

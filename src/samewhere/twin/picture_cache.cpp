@@ -109,7 +109,7 @@ std::optional<std::string> read_if_there(const path& file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return std::nullopt;
   try {
-    return core::read_file(file);
+    return core::read_file(file, core::kPictureLimit);
   } catch (const core::InputError&) {  // gone again, or not ours to read
     return std::nullopt;
   }

@@ -74,6 +74,7 @@ class PoseMeasurement {
     // the ratio speaks of the first, blind matches: the second look finds what fits by construction
     evidence.inlier_ratio =
         static_cast<double>(pose->inliers.size()) / std::max<double>(1.0, evidence.num_matches);
+    evidence.num_guided_matches = static_cast<int>(again.size());
     evidence.num_inliers = fine.num_inliers;
     evidence.reprojection_rmse_px = fine.reprojection_rmse_px;
     const std::vector<Match> inliers = inliers_of(again, fine);

@@ -25,6 +25,7 @@ TEST(MeasureGeometry, FindsTheRelativePoseOfTheSamePlace) {
   ASSERT_TRUE(evidence.match_from_query);
   EXPECT_LT(core::log_r3so3(inverse(kMoved) * rigid_part(*evidence.match_from_query)).norm(),
             0.005);
+  EXPECT_GE(evidence.num_guided_matches, evidence.num_inliers);
   EXPECT_GT(evidence.num_inliers, 100);
   ASSERT_TRUE(evidence.disagreement_m && evidence.disagreement_rad);
   EXPECT_LT(*evidence.disagreement_m, 0.02);
@@ -102,7 +103,13 @@ TEST(MeasureGeometry, TheSamePairGivesTheSameBitsWheneverItIsAsked) {
 
 core::Evidence good_evidence() {
   core::Evidence evidence{.similarity = 0.8};
-  evidence.geometry = core::GeometryEvidence{120, 90, 0.75, 0.5, 0.8, 1.0, core::Sim3{}};
+  evidence.geometry = core::GeometryEvidence{.num_matches = 120,
+                                             .num_inliers = 90,
+                                             .inlier_ratio = 0.75,
+                                             .spread_ratio = 0.5,
+                                             .overlap_ratio = 0.8,
+                                             .reprojection_rmse_px = 1.0,
+                                             .match_from_query = core::Sim3{}};
   evidence.odometry = core::OdometryEvidence{0.1, 0.01, 2.0};
   return evidence;
 }

@@ -1,0 +1,39 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/input/depth_check.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using testing::HasSubstr;
+
+// A floor and walls from 0.6 to 4 m, read with another factor than it was written with.
+std::string doubt(double written, double read) {
+  cv::Mat depth_m(120, 160, CV_32FC1);
+  for (int y = 0; y < depth_m.rows; ++y)
+    for (int x = 0; x < depth_m.cols; ++x)
+      depth_m.at<float>(y, x) = static_cast<float>((0.6 + 3.4 * y / 119.0) * written / read);
+  return doubt_about_depth(depth_m, read).value_or("none");
+}
+
+TEST(DepthCheck, ARoomReadAsItWasWrittenRaisesNoDoubt) {
+  EXPECT_EQ(doubt(1000.0, 1000.0), "none");
+  EXPECT_EQ(doubt(5000.0, 5000.0), "none");
+}
+
+TEST(DepthCheck, MillimetresReadAt5000AMetreAreDoubted) {
+  EXPECT_THAT(doubt(1000.0, 5000.0), HasSubstr("input.depth_factor=1000"));
+}
+
+TEST(DepthCheck, AFactorOf5000ReadAsMillimetresIsDoubted) {
+  EXPECT_THAT(doubt(5000.0, 1000.0), HasSubstr("input.depth_factor=5000"));
+}
+
+TEST(DepthCheck, APictureWithoutDepthTellsNothing) {
+  EXPECT_FALSE(doubt_about_depth(cv::Mat(120, 160, CV_32FC1, cv::Scalar(0)), 5000.0));
+  EXPECT_FALSE(doubt_about_depth(cv::Mat(), 5000.0));
+}
+
+}  // namespace
+}  // namespace samewhere::input

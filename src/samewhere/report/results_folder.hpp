@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <samewhere/core/folder_lock.hpp>
+
+namespace samewhere::report {
+
+// Where a run puts its results.
+struct ResultsPlace {
+  std::filesystem::path folder;          // as asked for; empty: the first of ...
+  std::filesystem::path name;            // ... NAME, NAME-2, NAME-3 that is not there
+  bool replaces_earlier = false;         // the folder may hold the results of an earlier run
+  std::filesystem::path source = {};     // of the run: never the folder for results
+  std::filesystem::path known_map = {};  // that the run starts in; it stays if it is in the folder
+};
+
+// The folder that a run writes into, for itself as long as this lives. Nothing is made, locked or
+// removed in vain: a run that has no good frame leaves everything as it was.
+class ResultsFolder {
+ public:
+  // Throws InputError if the folder asked for cannot take the results: it is the recording's, holds
+  // those of an earlier run that are not to be replaced, holds files with the names of results that
+  // are of no run (another's recording or map), or another program is writing into it.
+  explicit ResultsFolder(ResultsPlace place);
+
+  // At the first good frame: makes the folder (of two runs of one name at once each gets its own),
+  // and removes what an earlier run left there, with what `samewhere dense` made of it, and what
+  // killed ones did. Other files stay. Says so in the log. Throws InputError, also if another
+  // program is writing to a map in it.
+  void begin();
+
+  bool has_begun() const { return has_begun_; }
+  // Once it has begun.
+  const std::filesystem::path& path() const { return place_.folder; }
+
+ private:
+  void require_usable() const;
+  void remove_earlier_results() const;
+  void make_of_name();
+
+  ResultsPlace place_;
+  std::optional<core::FolderLock> lock_;
+  bool has_begun_ = false;
+};
+
+}  // namespace samewhere::report

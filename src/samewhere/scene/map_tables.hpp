@@ -1,0 +1,61 @@
+#pragma once
+
+// The tables of a map file, and its one row of counts.
+
+#include <cstdint>
+#include <optional>
+
+#include <samewhere/core/ids.hpp>
+#include <samewhere/scene/bytes.hpp>
+#include <samewhere/scene/row_file.hpp>
+
+namespace samewhere::scene {
+
+inline constexpr char kHeader[] = "header";
+inline constexpr char kState[] = "state";
+inline constexpr char kRig[] = "rig";
+inline constexpr char kKeyframe[] = "keyframe";
+inline constexpr char kView[] = "view";    // of keyframes, same numbers; never changes
+inline constexpr char kSlots[] = "slots";  // of keyframes, same numbers
+inline constexpr char kLandmark[] = "landmark";
+inline constexpr char kLoop[] = "loop";
+inline constexpr char kDoubtedLoop[] = "doubted_loop";
+inline constexpr char kMerge[] = "merge";
+inline constexpr char kFrame[] = "frame";            // number: the frame's id
+inline constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
+inline constexpr char kLedger[] = "ledger";          // bytes: a line of JSON
+inline constexpr char kThumbnail[] = "thumbnail";    // number: the frame's id; bytes: JPEG
+inline constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,    kView,
+                                          kSlots,  kLandmark,   kLoop,   kDoubtedLoop, kMerge,
+                                          kFrame,  kDescriptor, kLedger, kThumbnail};
+
+// 5: thumbnails.
+inline constexpr std::int64_t kMapFileVersion = 6;
+inline constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion,
+                                   kTables};
+
+// How much a commit left: rows that went missing are missed (but thumbnails, on which nothing
+// hangs).
+struct MapState {
+  std::uint64_t map_number = 0;
+  std::uint64_t num_settings = 0;
+  std::uint64_t num_rigs = 0;
+  std::uint64_t num_keyframes = 0;
+  std::uint64_t num_landmarks = 0;
+  std::uint64_t num_loops = 0;
+  std::uint64_t num_doubted_loops = 0;
+  std::uint64_t num_merges = 0;
+  std::uint64_t num_frames = 0;
+  std::uint64_t num_descriptors = 0;
+  std::uint64_t num_ledger_rows = 0;
+  std::optional<core::FrameId> last_frame;
+};
+
+template <class Archive>
+void fields(Archive& archive, Value<Archive, MapState>& state) {
+  archive(state.map_number, state.num_settings, state.num_rigs, state.num_keyframes,
+          state.num_landmarks, state.num_loops, state.num_doubted_loops, state.num_merges,
+          state.num_frames, state.num_descriptors, state.num_ledger_rows, state.last_frame);
+}
+
+}  // namespace samewhere::scene
