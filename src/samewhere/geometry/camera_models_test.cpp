@@ -24,15 +24,16 @@ core::KannalaBrandt random_fisheye(core::Random& random) {
           random.uniform(-0.0005, 0.0005)};
 }
 
+// Of lenses whose picture does not turn back before its corners.
 core::PinholeRadtan random_rational(core::Random& random) {
-  core::PinholeRadtan c{640,   480,  random.uniform(300.0, 700.0), random.uniform(300.0, 700.0),
+  core::PinholeRadtan c{640,   480,  random.uniform(450.0, 700.0), random.uniform(450.0, 700.0),
                         320.0, 240.0};
-  c.k1 = random.uniform(-0.2, 0.4);
-  c.k2 = random.uniform(-0.1, 0.1);
+  c.k1 = random.uniform(-0.1, 0.4);
+  c.k2 = random.uniform(-0.05, 0.1);
   c.p1 = random.uniform(-1e-3, 1e-3);
   c.p2 = random.uniform(-1e-3, 1e-3);
   c.k3 = random.uniform(-0.02, 0.02);
-  c.k4 = random.uniform(0.0, 0.4);
+  c.k4 = random.uniform(0.0, 0.2);
   c.k5 = random.uniform(-0.05, 0.1);
   c.k6 = random.uniform(-0.02, 0.02);
   return c;
