@@ -10,6 +10,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "program.hpp"
+#include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/test_board.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/test_folder.hpp>
@@ -74,7 +75,7 @@ TEST_F(InputCommands, CalibrateTakesSharpFramesOfAVideoThatLieApart) {
                               " --board 5x4 --square 0.03 --out " + quoted(path("video.txt")));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("12 show the board, 6 apart are used"));
-  const core::PinholeRadtan camera = input::read_camera_file(path("video.txt"));
+  const auto camera = geometry::pinhole(input::read_camera_file(path("video.txt")).camera);
   EXPECT_NEAR(camera.fx_px, 260.0, 6.0);
 }
 
@@ -92,7 +93,7 @@ TEST_F(InputCommands, CalibrateWritesTheCameraThatRunReads) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("no board in 1 of 5 pictures: 3.png"));
   EXPECT_THAT(outcome.out, HasSubstr("4.png"));
-  const core::PinholeRadtan camera = input::read_camera_file(path("camera.txt"));
+  const auto camera = geometry::pinhole(input::read_camera_file(path("camera.txt")).camera);
   EXPECT_NEAR(camera.fx_px, 260.0, 2.6);
   EXPECT_NEAR(camera.cx_px, 161.0, 2.0);
   EXPECT_EQ(camera.width_px, 320);
