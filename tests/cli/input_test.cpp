@@ -67,7 +67,8 @@ TEST_F(InputCommands, CalibrateTakesSharpFramesOfAVideoThatLieApart) {
         Eigen::Vector3d(-0.4, 0.1, 0.0), Eigen::Vector3d(0.0, 0.4, 0.1),
         Eigen::Vector3d(0.1, -0.45, 0.0), Eigen::Vector3d(0.3, 0.3, 0.3)}) {
     cv::Mat image;
-    cv::cvtColor(rendered_board(turn_rad, {0.0, 0.0, 0.24}), image, cv::COLOR_GRAY2BGR);
+    cv::cvtColor(rendered_board(turn_rad, {0.1 * turn_rad.y(), 0.05 * turn_rad.x(), 0.24}), image,
+                 cv::COLOR_GRAY2BGR);
     for (int i = 0; i < 4; ++i) writer.write(image);  // a second, two stretches
   }
   writer.release();
@@ -174,7 +175,7 @@ TEST_F(InputCommands, AVideoWithoutThePluginIsOneLine) {
                              quoted(path("walk.mp4")) + " 2>" + quoted(path("err.txt"));
   const int status = std::system(lonely.c_str());
   expect_one_line({WEXITSTATUS(status), "", core::read_file(path("err.txt"))},
-                  "samewhere-video.so: the plugin that reads videos and cameras cannot be loaded");
+                  "samewhere-video.so: the plugin that reads videos, cameras, BMP");
 }
 
 }  // namespace
