@@ -27,7 +27,9 @@ pipeline::Config load(const ConfigOptions& options) {
   return pipeline::load_config(options.profile, options.file, options.assignments);
 }
 
-std::string as_run_folder(const std::string& path) { return pipeline::run_folder_of(path).string(); }
+std::string as_run_folder(const std::string& path) {
+  return pipeline::run_folder_of(path).string();
+}
 
 std::string as_map_file(const std::string& path) { return pipeline::map_file_of(path).string(); }
 
