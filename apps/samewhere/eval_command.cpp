@@ -18,6 +18,7 @@ struct EvalCommand {
   std::string walk;
   std::string truth;
   bool stages = false;
+  FigureOptions figures;
 };
 
 }  // namespace
@@ -41,10 +42,13 @@ void add_eval_command(CLI::App& app) {
                 "print where the time went instead: wall time and processor time of each stage")
       ->excludes(truth)
       ->excludes(walk);
+  add_json_option(*sub, command->figures);
   sub->footer(
       "Examples:\n"
       "  samewhere eval runs/twin-corridors\n"
       "  samewhere eval runs/office --truth mocap.tum\n"
+      "  samewhere eval runs/office --json - | jq '.figures[\"ATE RMSE (median, "
+      "max)\"].numbers[0]'\n"
       "  samewhere eval runs/walk.txt --walk tower/walk.txt\n"
       "  samewhere eval runs/twin-corridors --stages");
   sub->callback([command] {
@@ -52,8 +56,11 @@ void add_eval_command(CLI::App& app) {
       core::print("{}", report::as_text(pipeline::stages_of_folder(command->folder)));
       return;
     }
-    print_figures(command->walk.empty() ? pipeline::evaluate_folder(command->folder, command->truth)
-                                        : pipeline::evaluate_walk(command->folder, command->walk));
+    const auto figures = command->walk.empty()
+                             ? pipeline::evaluate_folder(command->folder, command->truth)
+                             : pipeline::evaluate_walk(command->folder, command->walk);
+    if (command->figures.is_for_person()) print_figures(figures);
+    write_json(command->folder, figures, command->figures);
   });
 }
 

@@ -1,9 +1,13 @@
 #include "print.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/printable.hpp>
+#include <samewhere/core/progress.hpp>
 #include <samewhere/core/terminal.hpp>
+#include <samewhere/report/figures_json.hpp>
 
 namespace samewhere::app {
 
@@ -13,6 +17,32 @@ void print_figures(const std::vector<report::Figure>& figures) {
   for (const auto& figure : figures) {
     core::print("  {:<{}}  {}\n", figure.name, width,
                 core::printable_line(figure.value, core::kMaxMessage));
+  }
+}
+
+void add_json_option(CLI::App& command, FigureOptions& options) {
+  command.add_option("--json", options.json,
+                     "file for the figures as JSON; - for standard output, in place of the text");
+}
+
+void add_quiet_flag(CLI::App& command, FigureOptions& options) {
+  command.add_flag(
+      "--quiet",
+      [&options](std::int64_t count) {
+        options.is_quiet = count > 0;
+        core::Progress::silence(count > 0);
+      },
+      "print neither figures nor progress; warnings and errors remain");
+}
+
+void write_json(const std::string& title, const std::vector<report::Figure>& figures,
+                const FigureOptions& options) {
+  if (options.json.empty()) return;
+  const std::string text = report::figures_json(title, figures);
+  if (options.json == "-") {
+    core::print("{}", text);
+  } else {
+    core::write_file(options.json, text);
   }
 }
 

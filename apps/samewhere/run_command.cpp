@@ -42,6 +42,7 @@ struct RunCommand {
   bool is_realtime = false;
   bool is_forced = false;  // may replace the results of an earlier run
   ConfigOptions config;
+  FigureOptions figures;
 };
 
 // A folder name that tells where the run came from: the last part of a path, the preset of a twin.
@@ -206,7 +207,8 @@ int execute(const RunCommand& command, Work work) {
     record.config_yaml =
         core::config_as_yaml(with_estimated_camera(config, calibration, results.path()));
     errors = write(outcome, work, results.path());
-    print_outcome(outcome, results.path());
+    if (command.figures.is_for_person()) print_outcome(outcome, results.path());
+    write_json(record.title, record.figures, command.figures);
   } else if (!record.input_error && !record.is_interrupted) {
     throw core::InputError(command.source + ": gives no frame");
   }
@@ -252,6 +254,8 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
                 "a camera, or a video played at its own pace: always the newest frame; says how "
                 "many were dropped; two such runs need not agree");
   add_config_options(*sub, command->config);
+  add_json_option(*sub, command->figures);
+  add_quiet_flag(*sub, command->figures);
   sub->add_flag_callback(
       "--measure-all",
       [command] { command->config.assignments.push_back("verify.measure_all=true"); },

@@ -17,6 +17,9 @@ class Progress {
   // Ends the line. Called by the destructor too.
   void finish();
 
+  // Of every line from now on; called before any work begins.
+  static void silence(bool be_silent);
+
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -22,6 +23,9 @@
 namespace samewhere::pipeline {
 namespace {
 
+// Frames are counted by int.
+constexpr std::uint64_t kMaxFrame = std::numeric_limits<int>::max();
+
 std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
   std::istringstream lines(core::read_file(path));
   std::vector<report::ScoredPair> pairs;
@@ -31,9 +35,11 @@ std::vector<report::ScoredPair> read_pairs(const std::filesystem::path& path) {
     std::uint64_t query = 0;
     std::uint64_t match = 0;
     double score = 0.0;
-    if (!(words >> query >> match >> score)) {
-      throw core::InputError(
-          fmt::format("{}, line {}: expected `query match score`", path.string(), number));
+    const bool has_all = static_cast<bool>(words >> query >> match >> score);
+    if (!has_all || query > kMaxFrame || match > kMaxFrame) {
+      throw core::InputError(fmt::format(
+          "{}, line {}: expected `query match score`, of which the first two are numbers of frames",
+          path.string(), number));
     }
     pairs.push_back({core::FrameId(query), core::FrameId(match), score});
   }
