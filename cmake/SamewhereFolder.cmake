@@ -25,6 +25,8 @@ if(SAMEWHERE_SANITIZE)
   # what is given up are unaligned pointers and objects of another type
   target_compile_options(samewhere_options INTERFACE -fno-sanitize=null,alignment,vptr)
   target_link_options(samewhere_options INTERFACE -fsanitize=${SAMEWHERE_SANITIZE})
+  # Eigen would give out memory in another way than in Ceres, which is built without sanitizers: one must free what the other took
+  target_compile_definitions(samewhere_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 function(samewhere_folder NAME)

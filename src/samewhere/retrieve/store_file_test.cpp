@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -7,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <samewhere/core/checksum.hpp>
@@ -177,8 +179,14 @@ TEST_F(StoreFile, WhereNothingCanBeWrittenThatIsSaidAndAnOldFileStays) {
   const std::string before = saved(random_store(1, 5));
   EXPECT_THROW(save_store(random_store(2, 5), kDescriber, folder() / "no" / "such.sw"),
                core::InputError);
-  std::filesystem::create_directory(path().string() + ".partial");
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{100, limit.rlim_max};  // as a disk that is full
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
   EXPECT_THROW(save_store(random_store(2, 5), kDescriber, path()), core::InputError);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
   EXPECT_EQ(core::read_file(path()), before);
 }
 
