@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -14,6 +15,14 @@ namespace samewhere::report {
 namespace {
 
 using Json = nlohmann::ordered_json;  // as in loops.cpp
+
+// Frames and candidates are counted by int. A negative number reads as a large one.
+std::uint64_t index_of(const Json& json) {
+  const auto index = json.get<std::uint64_t>();
+  if (index <= static_cast<std::uint64_t>(std::numeric_limits<int>::max())) return index;
+  throw core::InputError(
+      fmt::format("found {}, expected the number of a frame or candidate", json.dump()));
+}
 
 // One entry of the file. What is wrong with it comes out as a Json exception.
 class Entry {
@@ -49,13 +58,13 @@ class Entry {
 
  private:
   core::FrameId frame(const char* name) const {
-    return core::FrameId(json_.at(name).get<std::uint64_t>(),
+    return core::FrameId(index_of(json_.at(name)),
                          json_.value(std::string(name) + "_session", std::uint16_t{0}));
   }
 
   // Of this query's session.
   core::CandidateId candidate(const Json& index) const {
-    return core::CandidateId(index.get<std::uint64_t>(), row_.candidate.query.session());
+    return core::CandidateId(index_of(index), row_.candidate.query.session());
   }
 
   std::optional<double> score(const char* name) const {
@@ -92,18 +101,17 @@ class Entry {
                            score("correction_rad").value_or(0.0), *squared};
     if (scores_.contains("rival")) evidence.rival = rival();
     if (scores_.contains("other_place"))
-      evidence.other_place = {
-          .frame = core::FrameId(scores_.at("other_place").get<std::uint64_t>()),
-          .num_inliers = scores_.at("other_place_inliers").get<int>(),
-          .apart_m = score("other_place_apart_m").value_or(0.0),
-          .apart_rad = score("other_place_apart_rad").value_or(0.0)};
+      evidence.other_place = {.frame = core::FrameId(index_of(scores_.at("other_place"))),
+                              .num_inliers = scores_.at("other_place_inliers").get<int>(),
+                              .apart_m = score("other_place_apart_m").value_or(0.0),
+                              .apart_rad = score("other_place_apart_rad").value_or(0.0)};
     if (scores_.contains("query_view")) evidence.sequence = sequence();
     return evidence;
   }
 
   core::RivalEvidence rival() const {
     core::RivalEvidence rival{
-        .frame = core::FrameId(scores_.at("rival").get<std::uint64_t>()),
+        .frame = core::FrameId(index_of(scores_.at("rival"))),
         .apart_m = score("rival_apart_m").value_or(0.0),
         .apart_rad = score("rival_apart_rad").value_or(0.0),
         .mahalanobis_squared = score("rival_mahalanobis_squared").value_or(0.0),

@@ -172,6 +172,11 @@ TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": 1, "match": 0, "verdict": "NOT",
       "stage": "mood", "reason": "", "scores": {"similarity": 0.5}, "match_from_query": null}]})"),
               HasSubstr("candidate 0: \"stage\" is \"mood\""));
+  for (const char* number : {"-1", "281474976710656", "18446744073709551615"})
+    EXPECT_THAT(complaint(std::string(R"({"version": 1, "candidates": [{"query": )") + number +
+                          R"(, "match": 0, "verdict": "NOT", "stage": "similarity", "reason": "",
+                         "scores": {"similarity": 0.5}, "match_from_query": null}]})"),
+                HasSubstr("candidate 0: found "));
   EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": "one", "match": 0,
       "scores": {"similarity": 0.5}}]})"),
               HasSubstr("candidate 0: "));
