@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "program.hpp"
-#include <samewhere/core/random.hpp>
+#include "test_wall.hpp"
 #include <samewhere/input/test_folder.hpp>
 
 namespace samewhere::test {
@@ -33,17 +33,6 @@ class Results : public testing::Test {
     folder_.write("rec/rgb.txt", rgb);
     folder_.write("rec/depth.txt", depth);
     folder_.write("rec/camera.txt", "260 0 160\n0 260 120\n0 0 1\n");
-  }
-
-  static cv::Mat wall() {
-    core::Random random(1);
-    cv::Mat image(240, 320, CV_8U, cv::Scalar(128));
-    for (int i = 0; i < 300; ++i) {
-      const cv::Rect square(static_cast<int>(random.index(300)),
-                            static_cast<int>(random.index(220)), 12, 12);
-      image(square).setTo(static_cast<double>(random.index(256)));
-    }
-    return image;
   }
 
   Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }

@@ -79,7 +79,7 @@ int run_program(const std::string& name, const std::function<int()>& work) noexc
     occupy_standard_streams();
     cv::setNumThreads(1);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
-    std::signal(SIGPIPE, SIG_IGN);  // the results of a run do not hang on who reads its output
+    std::signal(SIGPIPE, SIG_IGN);  // a run writes its results although its output is read no more
     log_to_stderr(name);
     return finish(name, guarded(name, work));
   } catch (...) {
