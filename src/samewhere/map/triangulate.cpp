@@ -5,7 +5,6 @@
 
 #include <samewhere/features/hamming.hpp>
 #include <samewhere/features/match_pair.hpp>
-#include <samewhere/features/pixel_angle.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/map/seen.hpp>
 #include <samewhere/map/triangulate.hpp>
@@ -42,8 +41,7 @@ class Pair {
        const Config& config, const features::Config& features)
       : first_(first.view),
         second_(second.view),
-        min_parallax_rad_(config.min_parallax_rad *
-                          features::pixel_width_ratio(second.view.image_size_px)),
+        config_(config),
         features_(features),
         second_from_first_(camera_from_world(map, second) *
                            inverse(camera_from_world(map, first))) {}
@@ -80,7 +78,7 @@ class Pair {
     const Eigen::Vector3d ray_2 =
         geometry::bearing_of_undistorted(second_.rig->cameras[0], pixel(second_, match.second));
     const Eigen::Vector3d normal = ray_1.cross(ray_2);
-    if (std::atan2(normal.norm(), ray_1.dot(ray_2)) < min_parallax_rad_) return std::nullopt;
+    if (std::atan2(normal.norm(), ray_1.dot(ray_2)) < config_.min_parallax_rad) return std::nullopt;
     // the midpoint of the shortest line between the rays
     const Eigen::Vector3d& eye_1 = second_from_first_.translation;
     const double range_1 = ray_2.cross(eye_1).dot(normal) / normal.squaredNorm();
@@ -152,7 +150,7 @@ class Pair {
 
   const features::View& first_;
   const features::View& second_;
-  double min_parallax_rad_ = 0.0;
+  const Config& config_;
   const features::Config& features_;
   core::Rigid3 second_from_first_;
 };

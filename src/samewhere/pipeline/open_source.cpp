@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/input/enlarge.hpp>
 #include <samewhere/input/open.hpp>
 #include <samewhere/input/rectify.hpp>
 #include <samewhere/pipeline/open_source.hpp>
@@ -24,6 +26,11 @@ std::unique_ptr<core::Source> open_source_with_truth(const Config& config) {
       std::make_shared<const twin::Walkthrough>(twin::parse_spec(config.source), config.twin);
   twin::watched_truth(*walk);
   return input::rectified(twin::open_twin(walk, config.twin));
+}
+
+std::unique_ptr<core::Source> for_slam(std::unique_ptr<core::Source> source,
+                                       const Config& config) {
+  return config.input.enlarge ? input::enlarged(std::move(source)) : std::move(source);
 }
 
 bool is_scale_free(const core::SourceInfo& info) {

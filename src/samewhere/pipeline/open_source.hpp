@@ -16,6 +16,10 @@ std::unique_ptr<core::Source> open_source(const Config& config);
 // now, with a progress line on stderr. Throws InputError, and Interrupted after Ctrl-C.
 std::unique_ptr<core::Source> open_source_with_truth(const Config& config);
 
+// What SLAM is given of a source: small pictures are enlarged (input/enlarge.hpp), unless
+// config.input.enlarge says otherwise.
+std::unique_ptr<core::Source> for_slam(std::unique_ptr<core::Source> source, const Config& config);
+
 // Whether the size of the world cannot be measured: one camera, no depth.
 bool is_scale_free(const core::SourceInfo& info);
 

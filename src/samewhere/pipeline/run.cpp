@@ -205,7 +205,7 @@ std::optional<std::string> note_on(const core::Ledger& ledger, const Config& con
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& given,
                     const MapPlan& plan) {
-  const auto source = read_ahead(std::move(unbuffered), given);
+  const auto source = read_ahead(for_slam(std::move(unbuffered), given), given);
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
   const Config config = with_window_in_frames(given, source->info());

@@ -62,7 +62,8 @@ void refine(const Config& config, SelfCalibration& calibration) {
   constexpr double kSettled = 0.02;
   constexpr double kFarthest = 2.0;
   for (int pass = 0; pass < kMostPasses && !core::is_interrupted(); ++pass) {
-    const auto source = input::with_camera(open_source(config), calibration.camera);
+    const auto source =
+        for_slam(input::with_camera(open_source(config), calibration.camera), config);
     const auto found = fit(first_map(*source, config), config);
     if (!found) return;
     const double f_px = calibration.camera.fx_px * found->ratio;

@@ -7,7 +7,6 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/features/pixel_angle.hpp>
 #include <samewhere/features/pyramid.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/geometry/essential.hpp>
@@ -136,14 +135,6 @@ std::optional<NoStart> refusal_of(const Start& start, const BestMotion& best,
   return std::nullopt;
 }
 
-// Parallax is told from noise by angles, which are as coarse as the pixels.
-StartConfig config_for(const View& view, StartConfig config) {
-  const double ratio = features::pixel_width_ratio(view.image_size_px);
-  config.min_parallax_rad *= ratio;
-  config.min_point_parallax_rad *= ratio;
-  return config;
-}
-
 // As sure as the second view is located among the points of both.
 core::Matrix6d information_of(const Start& start, const View& first, const View& second,
                               const StartSettings& settings) {
@@ -171,7 +162,7 @@ Result<Start, NoStart> try_start(const View& first, const View& second,
                                  const StartSettings& settings) {
   core::require(first.rig->is_calibrated() && second.rig->is_calibrated(),
                 "only calibrated views start a map");
-  const StartConfig config = config_for(second, settings.start);
+  const StartConfig& config = settings.start;
   const auto matches =
       match_pair(first.features->descriptors, second.features->descriptors, settings.features);
   const auto num_matches = static_cast<int>(matches.size());
