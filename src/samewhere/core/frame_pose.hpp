@@ -7,11 +7,32 @@
 
 namespace samewhere::core {
 
-// States of a session. kWeak: the pose was measured, on less evidence than usual. kLost: no pose.
-enum class FrameStatus { kStarting, kTracking, kWeak, kLost, kResumed };
+// States of a session. kWeak: the pose was measured, on less evidence than usual, or its scale is
+// suspected to have changed. kLost: no pose. kWaitingFor...: there is no map yet, and this is what
+// the frame lacks to begin one: corners; of a camera with depth, depth at them; of one without, a
+// second view from elsewhere.
+enum class FrameStatus {
+  kStarting,
+  kTracking,
+  kWeak,
+  kLost,
+  kResumed,
+  kWaitingForFeatures,
+  kWaitingForDepth,
+  kWaitingForParallax
+};
+constexpr FrameStatus kLastStatus = FrameStatus::kWaitingForParallax;
+constexpr bool is_waiting(FrameStatus status) { return status > FrameStatus::kResumed; }
 
 constexpr std::string_view name_of(FrameStatus status) {
-  constexpr std::string_view kNames[] = {"starting", "tracking", "weak", "lost", "resumed"};
+  constexpr std::string_view kNames[] = {"starting",
+                                         "tracking",
+                                         "weak",
+                                         "lost",
+                                         "resumed",
+                                         "waiting for features",
+                                         "waiting for depth",
+                                         "waiting for parallax"};
   return kNames[static_cast<int>(status)];
 }
 

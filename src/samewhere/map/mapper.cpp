@@ -18,16 +18,6 @@ double median_depth_m(const features::View& view) {
   return core::median(std::move(depths)).value_or(0.0F);
 }
 
-// Of the landmarks that the view shows, along its optical axis.
-double median_landmark_depth_m(const scene::MapVersion& map, const TrackedView& tracked) {
-  const core::Rigid3 camera_from_world =
-      inverse(world_from_frame(map, tracked.pose) * tracked.view.rig->body_from_camera[0]);
-  std::vector<double> depths;
-  for (const auto& [feature, landmark] : tracked.landmarks)
-    depths.push_back((camera_from_world * position_in_world(map, map.at(landmark))).z());
-  return core::median(std::move(depths)).value_or(0.0);
-}
-
 // Landmarks that a second keyframe shows too. What only one has shown may never be found again: it
 // says nothing of how much of the reference is still in sight. Of the first keyframe all.
 int num_proven_landmarks(const scene::MapVersion& map, const scene::Keyframe& keyframe) {
@@ -109,12 +99,21 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
   return build_local_map(map, reference, {config.max_neighbours, config.near_neighbours});
 }
 
+double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked) {
+  const core::Rigid3 camera_from_world =
+      inverse(world_from_frame(map, tracked.pose) * tracked.view.rig->body_from_camera[0]);
+  std::vector<double> depths;
+  for (const auto& [feature, landmark] : tracked.landmarks)
+    depths.push_back((camera_from_world * position_in_world(map, map.at(landmark))).z());
+  return core::median(std::move(depths)).value_or(0.0);
+}
+
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
                       const Config& config) {
   if (!can_keep(map, tracked.view, config)) return false;
   const bool has_depth = !is_without_depth(map);
   const double depth_m =
-      has_depth ? median_depth_m(tracked.view) : median_landmark_depth_m(map, tracked);
+      has_depth ? median_depth_m(tracked.view) : median_landmark_depth(map, tracked);
   const double max_move_ratio =
       has_depth ? config.max_move_ratio : config.max_move_ratio_without_depth;
   const double min_tracked_ratio =

@@ -43,6 +43,10 @@ bool can_keep(const scene::MapVersion& map, const features::View& view, const Co
 scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId reference,
                           const Config& config);
 
+// Median depth of the landmarks that the view shows, along its optical axis, map units; 0: it shows
+// none.
+double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked);
+
 // Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
 // lost sight of it.
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,

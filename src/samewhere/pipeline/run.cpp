@@ -145,6 +145,21 @@ void record_slam(const Slam& slam, const std::vector<std::string>& names,
   drop_unused_thumbnails(record);
 }
 
+// "frames 839 to 853: lengths 1/8.1 of the usual", of at most three.
+std::string told(const std::vector<track::ScaleDoubt>& doubts) {
+  constexpr std::size_t kMost = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(doubts.size(), kMost); ++i) {
+    const auto& [first, last, factor] = doubts[i];
+    text += fmt::format("{}frames {} to {}: lengths {} the usual", i == 0 ? "" : "; ",
+                        first.index(), last.index(),
+                        factor < 1.0 ? fmt::format("1/{:.1f} of", 1.0 / factor)
+                                     : fmt::format("{:.1f} times", factor));
+  }
+  if (doubts.size() > kMost) text += fmt::format("; {} more", doubts.size() - kMost);
+  return text;
+}
+
 // How good it is, as figures, and the truth to be drawn with it.
 void record_figures(const MappedSlam& mapped, const Config& config, const MapPlan& plan,
                     const core::Truth& truth, report::RunRecord& record) {
@@ -161,6 +176,10 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   if (record.is_scale_unknown) {
     record.figures.push_back(
         {"scale", "unknown: one camera without depth; lengths of the results are in map units"});
+  }
+  if (!slam.scale_doubts().empty()) {
+    record.figures.push_back({"scale drift suspected", told(slam.scale_doubts())});
+    spdlog::warn("scale drift suspected: {}", record.figures.back().value);
   }
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"no start, at the end", slam.why_not_started()});

@@ -50,6 +50,8 @@ class Slam {
 
   // Why there is no pose, as long as there is none: of the views tried last.
   std::string why_not_started() const { return tracking_.why_not_started(); }
+  // Where the scale of a map without depth is suspected to have changed, in the order of time.
+  const std::vector<track::ScaleDoubt>& scale_doubts() const { return tracking_.scale_doubts(); }
   // How often the map was given up for a new one, with all poses found in it.
   int num_starts_given_up() const { return tracking_.num_starts_given_up(); }
 

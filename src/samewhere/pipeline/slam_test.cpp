@@ -111,6 +111,30 @@ TEST(Slam, BlackFramesAreLostAndTheWalkResumesAfterThem) {
   EXPECT_EQ(trajectory_of(slam.map(), slam.frames()).size(), slam.frames().size() - 2);
 }
 
+TEST(Slam, FramesBeforeTheMapSayWhatTheyWaitFor) {
+  const Config config = short_walk();
+  Slam slam(config);
+  const auto source = open_source(config);
+  for (int i = 0; i < 3; ++i) {
+    auto frame = source->next();
+    if (i < 2) frame->depth_m = cv::Mat::zeros(480, 640, CV_32F);
+    if (i == 0) frame->images[0] = cv::Mat::zeros(480, 640, CV_8UC3);
+    slam.feed(*frame);
+    if (i == 0) {
+      EXPECT_EQ(slam.why_not_started(),
+                "0 corners in the picture, expected 50: it is dark, blurred or of one tone");
+    }
+    if (i == 1) {
+      EXPECT_TRUE(slam.why_not_started().ends_with(
+          "has depth, expected 50: the depth pictures are missing or empty"));
+    }
+  }
+  slam.finish();
+  EXPECT_EQ(slam.frames()[0].status, core::FrameStatus::kWaitingForFeatures);
+  EXPECT_EQ(slam.frames()[1].status, core::FrameStatus::kWaitingForDepth);
+  EXPECT_EQ(slam.frames()[2].status, core::FrameStatus::kStarting);
+}
+
 TEST(Slam, OneCameraStartsLateAndThenFollowsTheTruthUpToScale) {
   Config config = short_walk();
   config.source = "twin:office-loop?seed=5&camera=mono";
@@ -121,6 +145,10 @@ TEST(Slam, OneCameraStartsLateAndThenFollowsTheTruthUpToScale) {
   while (const auto frame = source->next()) slam.feed(*frame);
   slam.finish();
   ASSERT_GE(slam.map().keyframes.size(), 2U);
+  for (const auto& frame : slam.frames()) {
+    if (frame.is_measured) break;
+    EXPECT_EQ(frame.status, core::FrameStatus::kWaitingForParallax);
+  }
   const core::Trajectory trajectory = trajectory_of(slam.map(), slam.frames());
   EXPECT_GT(trajectory.size(), slam.frames().size() / 2);
   const auto error =

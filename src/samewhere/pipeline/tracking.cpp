@@ -29,6 +29,7 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
       lost_tracker_({config.track, features_of_lost(config, depth_from == DepthFrom::kMotion),
                      config.optimize, static_cast<std::uint64_t>(config.seed)}),
       place_finder_(config_, lost_tracker_),
+      scale_watch_(config.track.max_scale_change),
       mapping_(mapping) {
   if (depth_from == DepthFrom::kMotion) {
     starter_.emplace(track::StartSettings{config.track.start, config.track.drift, config.features,
@@ -64,7 +65,9 @@ void Tracking::feed(const core::Frame& frame) {
     const features::View view = extract(frame);
     tracked = locate(frame, view);
     frames_.push_back(tracked ? by_odometry(tracked->pose)
-                              : core::FramePose{.frame = view.frame, .stamp_s = view.stamp_s});
+                              : core::FramePose{.frame = view.frame,
+                                                .stamp_s = view.stamp_s,
+                                                .status = status_without_pose(view)});
     if (tracked && !is_map_fixed_) passing_.see(frame, frames_.back());
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
@@ -92,6 +95,7 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
   if (tracked) {
     if (starter_) starter_->forget();
     follow(*tracked);
+    doubt_scale(*tracked);
     remember(*tracked);
     last_depth_m_ = frame.depth_m;
   } else {
@@ -239,6 +243,28 @@ void Tracking::remember(const map::TrackedView& tracked) {
   last_ = tracked;
 }
 
+void Tracking::doubt_scale(map::TrackedView& tracked) {
+  if (!last_ || !is_without_depth(map_)) return;
+  const double step =
+      (world_from(tracked.pose).translation - world_from(last_->pose).translation).norm();
+  const auto factor =
+      scale_watch_.see(tracked.pose.stamp_s, step, map::median_landmark_depth(map_, tracked));
+  if (!factor) return;
+  core::FramePose& pose = tracked.pose;
+  if (pose.status == core::FrameStatus::kTracking) {
+    pose.status = core::FrameStatus::kWeak;
+    pose.information /= config_.track.drift.weak_factor * config_.track.drift.weak_factor;
+  }
+  track::note_doubt(scale_doubts_, pose.frame, *factor);
+}
+
+core::FrameStatus Tracking::status_without_pose(const features::View& view) const {
+  if (!map_.keyframes.empty()) return core::FrameStatus::kLost;
+  if (view.features->size() < config_.map.min_landmarks)
+    return core::FrameStatus::kWaitingForFeatures;
+  return starter_ ? core::FrameStatus::kWaitingForParallax : core::FrameStatus::kWaitingForDepth;
+}
+
 bool Tracking::can_promote_last() const {
   return !is_map_fixed_ && last_ && !is_kept(*last_) &&
          map::can_keep(map_, last_->view, config_.map);
@@ -262,6 +288,7 @@ void Tracking::keep(const map::TrackedView& tracked, const cv::Mat& image) {
 
 void Tracking::see_kept() {
   scene::MapVersion map = wait_for_mapping().map;
+  if (map.loops.size() != map_.loops.size()) scale_watch_.forget();
   // the reference may be at the other end of the loop
   if (last_ && has_lost_a_loop(map_, map)) last_->pose = by_odometry(last_->pose);
   map_ = std::move(map);

@@ -15,6 +15,7 @@
 #include <samewhere/pipeline/place_finder.hpp>
 #include <samewhere/scene/local_map.hpp>
 #include <samewhere/scene/map_file.hpp>
+#include <samewhere/track/scale_watch.hpp>
 #include <samewhere/track/starter.hpp>
 #include <samewhere/track/tracker.hpp>
 
@@ -45,6 +46,8 @@ class Tracking {
   const core::Timings& timings() const { return timings_; }
   // Why the views tried last did not start a map.
   std::string why_not_started() const;
+  // Where the scale of a map without depth is suspected to have changed, in the order of time.
+  const std::vector<track::ScaleDoubt>& scale_doubts() const { return scale_doubts_; }
   // How often the map was given up for a new one, with all poses found in it.
   int num_starts_given_up() const { return num_starts_given_up_; }
 
@@ -78,6 +81,10 @@ class Tracking {
   core::FramePose by_odometry(const core::FramePose& pose);
   core::Rigid3 guessed_pose() const;
   void remember(const map::TrackedView& tracked);
+  // What a frame without a pose is: lost, or waiting for the map to begin.
+  core::FrameStatus status_without_pose(const features::View& view) const;
+  // Without depth: a pose whose scale is suspected to have changed is weak, and noted.
+  void doubt_scale(map::TrackedView& tracked);
 
   // The map begins. Nothing: not yet.
   std::optional<map::TrackedView> start(const core::Frame& frame, const features::View& view);
@@ -114,7 +121,10 @@ class Tracking {
   PlaceFinder place_finder_;
   PassingThings passing_;
   std::optional<track::Starter> starter_;  // one camera
-  int num_with_depth_ = 0;                 // features of the last view that might have started
+  int num_features_ = 0;                   // of the last view that might have started
+  int num_with_depth_ = 0;                 // of these
+  track::ScaleWatch scale_watch_;
+  std::vector<track::ScaleDoubt> scale_doubts_;
   MappingLink& mapping_;
 
   std::uint16_t session_ = 0;

@@ -23,6 +23,7 @@ core::FramePose starting_pose(const features::View& view, core::KeyframeId keyfr
 
 std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
                                                 const features::View& view) {
+  num_features_ = view.features->size();
   if (starter_) return start_by_motion(frame, view);
   num_with_depth_ = map::num_with_depth(view);
   if (!map::can_start(view, config_.map)) return std::nullopt;
@@ -34,11 +35,14 @@ std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
 }
 
 std::string Tracking::why_not_started() const {
+  if (num_features_ < config_.map.min_landmarks) {
+    return fmt::format("{} corners in the picture, expected {}: it is dark, blurred or of one tone",
+                       num_features_, config_.map.min_landmarks);
+  }
   if (!starter_ && num_with_depth_ == 0) {
     return fmt::format(
-        "no feature has depth, expected {}: the depth pictures are missing or empty, or the "
-        "pictures show no corners",
-        config_.map.min_landmarks);
+        "none of {} features has depth, expected {}: the depth pictures are missing or empty",
+        num_features_, config_.map.min_landmarks);
   }
   if (!starter_) {
     return fmt::format("{} features with depth, expected {}", num_with_depth_,
@@ -88,7 +92,13 @@ void Tracking::give_up_poses() {
   passing_.forget();
   if (num_keyframes_ > num_given_up_) ++num_starts_given_up_;
   place_finder_.forget();
-  for (auto& pose : frames_) pose = {.frame = pose.frame, .stamp_s = pose.stamp_s};
+  scale_watch_.forget();
+  scale_doubts_.clear();
+  for (auto& pose : frames_) {
+    const core::FrameStatus status =
+        is_waiting(pose.status) ? pose.status : core::FrameStatus::kLost;
+    pose = {.frame = pose.frame, .stamp_s = pose.stamp_s, .status = status};
+  }
   keyframe_of_.clear();
   num_given_up_ = num_keyframes_;
   num_sent_frames_ = 0;

@@ -85,7 +85,9 @@ svg text {
 .weak { fill: var(--maybe); background: var(--maybe); }
 .lost { fill: var(--no); background: var(--no); }
 .resumed { fill: var(--resume); background: var(--resume); }
-.legend li.starting, .legend li.tracking, .legend li.weak, .legend li.lost, .legend li.resumed {
+.waiting { fill: var(--bar); background: var(--bar); }
+.legend li.starting, .legend li.tracking, .legend li.weak, .legend li.lost, .legend li.resumed,
+.legend li.waiting {
   background: none;
 }
 .funnel { display: grid; gap: 0.55rem; margin-top: 1.25rem; }

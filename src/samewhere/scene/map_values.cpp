@@ -209,8 +209,7 @@ const char* complaint_on(const core::FramePose& pose) {
   return first_complaint({
       {is_frame(pose.frame), "is of a frame that no session has"},
       {std::isfinite(pose.stamp_s), "has a time stamp that is none"},
-      {status >= 0 && status <= static_cast<int>(core::FrameStatus::kResumed),
-       "has a status that is none"},
+      {status >= 0 && status <= static_cast<int>(core::kLastStatus), "has a status that is none"},
       {is_pose(pose.reference_from_frame), "has a pose that is none"},
       {is_information(pose.information), "has an information matrix that is not positive definite"},
       {pose.num_inliers >= 0, "has fewer inliers than none"},

@@ -150,6 +150,7 @@ struct Config {
   int weak_inliers = 40;
   int sure_inliers = 100;
   double min_share_by_depth = 0.9;
+  double max_scale_change = 4.0;
   LostConfig lost;
   StartConfig start;
   DriftConfig drift;
@@ -181,6 +182,12 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
                  "depth pictures show must lie on each other, and holds it; above 1: never",
          .min = 0.0,
          .max = 1.1});
+  visit("max_scale_change", config.max_scale_change,
+        {.help = "without depth: camera and landmarks in sight so many times slower and nearer (or "
+                 "faster and farther) than usual, both at once and lasting: the scale is suspected "
+                 "to have changed, and poses are weak; 0: nothing is suspected",
+         .min = 0.0,
+         .max = 1000.0});
   visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});
   visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
   visit("drift", config.drift,

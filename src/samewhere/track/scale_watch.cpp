@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/median.hpp>
+#include <samewhere/track/scale_watch.hpp>
+
+namespace samewhere::track {
+namespace {
+
+constexpr double kStep = 0.05;     // of the logarithm
+constexpr double kWindow_s = 2.0;  // whose medians are compared with the usual ones
+constexpr double kFullWindow_s = 1.5;
+constexpr double kLasting_s = 1.5;
+constexpr double kLongestGap_s = 0.5;  // between frames that tell a speed
+constexpr int kMinUsual = 50;          // frames
+constexpr double kMinFlow_hz = 0.05;   // depths per second below which the camera stands
+constexpr double kMaxFlowChange = 3.0;
+
+}  // namespace
+
+void LogMedian::add(double value) {
+  const double step = std::floor(std::log(value) / kStep) + kNumSteps / 2;
+  const auto slot = static_cast<std::size_t>(std::clamp(step, 0.0, kNumSteps - 1.0));
+  ++counts_[slot];
+  ++size_;
+}
+
+double LogMedian::value() const {
+  core::require(size_ > 0, "there are values of which one is in the middle");
+  int num_below = 0;
+  std::size_t slot = 0;
+  while (2 * (num_below + static_cast<int>(counts_[slot])) < size_)
+    num_below += static_cast<int>(counts_[slot++]);
+  return std::exp((static_cast<double>(slot) + 0.5 - kNumSteps / 2) * kStep);
+}
+
+void ScaleWatch::forget() { *this = ScaleWatch(max_change_); }
+
+std::optional<double> ScaleWatch::see(double stamp_s, double step, double depth) {
+  if (max_change_ <= 0.0) return std::nullopt;
+  const double gap_s = last_stamp_s_ ? stamp_s - *last_stamp_s_ : 0.0;
+  last_stamp_s_ = stamp_s;
+  if (gap_s <= 0.0 || gap_s > kLongestGap_s) {
+    window_.clear();
+    changed_since_s_.reset();
+    return std::nullopt;
+  }
+  if (step <= 0.0 || depth <= 0.0) return std::nullopt;
+  window_.push_back({stamp_s, step / gap_s, depth});
+  while (stamp_s - window_.front().stamp_s > kWindow_s) window_.pop_front();
+  if (stamp_s - window_.front().stamp_s < kFullWindow_s) return std::nullopt;
+  std::vector<double> speeds;
+  std::vector<double> depths;
+  for (const Seen& seen : window_) {
+    speeds.push_back(seen.speed);
+    depths.push_back(seen.depth);
+  }
+  const Seen now{stamp_s, *core::median(std::move(speeds)), *core::median(std::move(depths))};
+  const auto factor = change(now);
+  learn(now);
+  if (!factor) {
+    changed_since_s_.reset();
+    return std::nullopt;
+  }
+  if (!changed_since_s_) changed_since_s_ = stamp_s;
+  return stamp_s - *changed_since_s_ >= kLasting_s ? factor : std::nullopt;
+}
+
+void ScaleWatch::learn(const Seen& now) {
+  if (now.speed < kMinFlow_hz * now.depth) return;
+  usual_speed_.add(now.speed);
+  usual_depth_.add(now.depth);
+}
+
+// The smaller of both changes: as much as both say.
+std::optional<double> ScaleWatch::change(const Seen& now) const {
+  if (usual_speed_.size() < kMinUsual) return std::nullopt;
+  const double by_speed = std::log(now.speed / usual_speed_.value());
+  const double by_depth = std::log(now.depth / usual_depth_.value());
+  if (std::abs(by_speed - by_depth) > std::log(kMaxFlowChange)) return std::nullopt;
+  const double least = std::min(std::abs(by_speed), std::abs(by_depth));
+  if (by_speed * by_depth <= 0.0 || least < std::log(max_change_)) return std::nullopt;
+  return std::exp(by_speed > 0.0 ? least : -least);
+}
+
+void note_doubt(std::vector<ScaleDoubt>& doubts, core::FrameId frame, double factor) {
+  if (doubts.empty() || doubts.back().last.index() + 1 != frame.index())
+    doubts.push_back({frame, frame, factor});
+  ScaleDoubt& doubt = doubts.back();
+  doubt.last = frame;
+  if (std::abs(std::log(factor)) > std::abs(std::log(doubt.factor))) doubt.factor = factor;
+}
+
+}  // namespace samewhere::track
