@@ -185,7 +185,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("max_scale_change", config.max_scale_change,
         {.help = "without depth: camera and landmarks in sight so many times slower and nearer (or "
                  "faster and farther) than usual, both at once and lasting: the scale is suspected "
-                 "to have changed, and poses are weak; 0: nothing is suspected",
+                 "to have changed, and poses are weak; up to 1: nothing is suspected",
          .min = 0.0,
          .max = 1000.0});
   visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});

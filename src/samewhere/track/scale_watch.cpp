@@ -39,7 +39,7 @@ double LogMedian::value() const {
 void ScaleWatch::forget() { *this = ScaleWatch(max_change_); }
 
 std::optional<double> ScaleWatch::see(double stamp_s, double step, double depth) {
-  if (max_change_ <= 0.0) return std::nullopt;
+  if (max_change_ <= 1.0) return std::nullopt;
   const double gap_s = last_stamp_s_ ? stamp_s - *last_stamp_s_ : 0.0;
   last_stamp_s_ = stamp_s;
   if (gap_s <= 0.0 || gap_s > kLongestGap_s) {

@@ -30,7 +30,7 @@ class LogMedian {
 // changed scale: what is found is a suspicion. Lengths are in map units.
 class ScaleWatch {
  public:
-  // `max_change`: how many times smaller or larger is a change; 0: nothing is noticed.
+  // `max_change`: how many times smaller or larger is a change; 1 or less: nothing is noticed.
   explicit ScaleWatch(double max_change) : max_change_(max_change) {}
 
   // A frame: how far the camera moved since the frame before, and the median depth of what it sees.
