@@ -11,11 +11,17 @@ if(SAMEWHERE_TWIN)
   set(SAMEWHERE_EMBREE embree)
 endif()
 
-# samewhere_leave_out_rendered(SOURCES): takes the tests that render out of the list SOURCES where nothing can be rendered.
+# samewhere_leave_out_rendered(SOURCES): takes the tests that render out of the list SOURCES where nothing can be rendered, and
+# those of a build that cannot (x_without_test.cpp) where it can.
 function(samewhere_leave_out_rendered SOURCES)
   set(sources ${${SOURCES}})
-  if(NOT SAMEWHERE_TWIN)
+  if(SAMEWHERE_TWIN)
+    list(FILTER sources EXCLUDE REGEX "/twin/[a-z_]*_without_test\\.cpp$")
+  else()
+    set(without ${sources})
+    list(FILTER without INCLUDE REGEX "/twin/[a-z_]*_without_test\\.cpp$")
     list(FILTER sources EXCLUDE REGEX "/twin/[a-z_]*_test\\.cpp$")
+    list(APPEND sources ${without})
     list(FILTER sources EXCLUDE REGEX "/pipeline/(disturbance|recognition|relocalisation|slam)_test\\.cpp$")
     list(FILTER sources EXCLUDE REGEX "^cli/(commands|dense|known_map|ledger|map|twin)_test\\.cpp$")
     list(FILTER sources EXCLUDE REGEX "^(corridor/corridor|stereo/stereo|threads/threads)_test\\.cpp$")

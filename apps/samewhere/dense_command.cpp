@@ -8,6 +8,7 @@
 #include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/folder_lock.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/pipeline/dense_maps.hpp>
@@ -33,8 +34,11 @@ void execute(const DenseCommand& command) {
   if (files.cloud.empty() && files.grid.empty() && files.octree.empty()) {
     lock.emplace(run);
     files = {run / "cloud.ply", run / "map", run / "map.bt"};
+    for (const char* name : {"cloud.ply", "map.pgm", "map.yaml", "map.bt"})
+      core::remove_partial_files(run / name);
   }
-  const pipeline::DenseOutcome outcome = pipeline::make_dense_maps(run, config, files);
+  const pipeline::DenseOutcome outcome =
+      pipeline::make_dense_maps(run, config, files, lock ? &*lock : nullptr);
   print_figures(outcome.figures);
   if (outcome.no_grid && asks_for_grid)
     throw core::InputError(run.string() + ": " + *outcome.no_grid);

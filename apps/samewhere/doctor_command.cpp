@@ -20,11 +20,13 @@
 #include <samewhere/describe/preprocess.hpp>
 #include <samewhere/network/inference.hpp>
 #include <samewhere/twin/picture_cache.hpp>
+#include <samewhere/twin/ray_scene.hpp>
 
 namespace samewhere::app {
 namespace {
 
 std::string picture_cache() {
+  if (!twin::can_render()) return "none: built without (SAMEWHERE_TWIN=OFF)";
   const auto place = twin::cache_place_from_environment();
   if (!place) return "off (SAMEWHERE_CACHE is unset)";
   std::error_code ignored;  // what cannot be looked at is not there

@@ -1,11 +1,9 @@
 #include "print.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/printable.hpp>
-#include <samewhere/core/progress.hpp>
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/report/figures_json.hpp>
 
@@ -26,13 +24,8 @@ void add_json_option(CLI::App& command, FigureOptions& options) {
 }
 
 void add_quiet_flag(CLI::App& command, FigureOptions& options) {
-  command.add_flag(
-      "--quiet",
-      [&options](std::int64_t count) {
-        options.is_quiet = count > 0;
-        core::Progress::silence(count > 0);
-      },
-      "print neither figures nor progress; warnings and errors remain");
+  command.add_flag("--quiet", options.is_quiet,
+                   "print neither figures nor progress; warnings and errors remain");
 }
 
 void write_json(const std::string& title, const std::vector<report::Figure>& figures,

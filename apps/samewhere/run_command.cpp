@@ -174,10 +174,12 @@ pipeline::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunComm
                              const pipeline::Config& config, Work work,
                              const std::function<std::filesystem::path()>& begin) {
   if (work == Work::kRecognition)
-    return pipeline::run_recognition(std::move(source), config, [&] { begin(); });
+    return pipeline::run_recognition(
+        std::move(source), config, [&] { begin(); }, command.figures.is_quiet);
   return pipeline::run_slam(
       std::move(source), config,
-      {.known = command.map, .is_known_fixed = command.localize, .begin = begin});
+      {.known = command.map, .is_known_fixed = command.localize, .begin = begin},
+      command.figures.is_quiet);
 }
 
 // Each on a line of stderr. Returns the exit code.

@@ -1,7 +1,7 @@
 """Small good inputs of every kind that the program reads. Each function fills a folder that is there."""
 import os
 
-from pictures import avi, depth_png, jpeg, png, texture
+from pictures import avi, board, depth_png, jpeg, png, texture
 
 WIDTH, HEIGHT = 160, 120
 NUM_FRAMES = 6
@@ -163,6 +163,20 @@ def image_list(folder, num_frames=NUM_FRAMES):
 def video(folder, num_frames=NUM_FRAMES):
     write(folder, "walk.avi", avi(list(views(num_frames, make=jpeg)), WIDTH))
     write(folder, "camera.txt", CAMERA)
+
+
+BOARD = ("--board", "6x4", "--square", "0.03")
+
+
+def boards(folder, make=png, ending="png"):
+    """Pictures of a checkerboard, for `calibrate`."""
+    poses = [((0.0, 0.0), (0, 0, 9)), ((0.5, 0.0), (0.5, 0, 9)), ((-0.5, 0.1), (0, 0.5, 9)),
+             ((0.0, 0.5), (-0.5, 0, 9)), ((0.1, -0.5), (0, -0.5, 9)), ((0.35, 0.35), (1.5, 1, 11)),
+             ((-0.35, 0.35), (-1.5, 1, 11)), ((0.3, -0.4), (1, -1, 10))]
+    size_px = (2 * WIDTH, 2 * HEIGHT)
+    for i, (tilt_rad, centre) in enumerate(poses):
+        rows = board(size_px, 2 * FOCAL_PX, (6, 4), tilt_rad, centre)
+        write(folder, f"{i:06d}.{ending}", make(rows, size_px[0]))
 
 
 def graph_2d(folder):

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include <samewhere/core/draft.hpp>
 #include <samewhere/core/file_kind.hpp>
 
 namespace samewhere::core {
@@ -19,9 +21,9 @@ std::string read_file(const std::filesystem::path& path, const SizeLimit& limit 
 // InputError if the file cannot be read.
 std::string read_beginning(const std::filesystem::path& path, std::size_t num_bytes);
 
-// Writes the whole file or nothing: into a temporary file beside it that no other program has
-// (NAME.partial-PROCESS-NUMBER), then renamed. A link is replaced, and that which it leads to
-// stays. A pipe or a device is written to as it is, and so is what the process was given open
+// Writes the whole file or nothing: it gets its name when it is written (draft.hpp). A link is
+// replaced, and that which it leads to stays. A pipe or a device is written to as it is, and so is
+// what the process was given open
 // (/dev/stdout). Throws InputError naming the path and the system's reason (no space left,
 // permission denied).
 void write_file(const std::filesystem::path& path, std::string_view content);
@@ -30,7 +32,25 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 // result is replaced, too, and a device refused.
 void replace_file(const std::filesystem::path& path, std::string_view content);
 
-// Removes what killed programs left of `path`: temporary files of write_file.
+// Writes a file that was not there, whole or not at all. Returns false if something has its name, a
+// link, say. Throws InputError as write_file does.
+bool write_new_file(const std::filesystem::path& path, std::string_view content);
+
+// Files that tell of one thing. All are written, then all get their names, in the order in which
+// they were added: a program that is killed or a disk that is full while they are written changes
+// none of them.
+class FilesTogether {
+ public:
+  // As write_file, but for the name: a pipe takes the bytes at once.
+  void add(const std::filesystem::path& path, std::string_view content);
+  void publish();
+
+ private:
+  std::vector<Draft> drafts_;
+};
+
+// Removes what killed programs left of `path`: temporary files of write_file. No other program may
+// be writing it.
 void remove_partial_files(const std::filesystem::path& path);
 
 // Makes the folder and checks that files can be made in it, without leaving one. Throws InputError.

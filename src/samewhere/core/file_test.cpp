@@ -149,6 +149,43 @@ TEST_F(FileTest, ALinkIsReplacedAndWhatItLeadsToStays) {
   EXPECT_EQ(num_entries(), 2);
 }
 
+TEST_F(FileTest, ADraftHasNoNameUntilItIsWholeAndLeavesNothing) {
+  write_file(folder_ / "graph", "old");
+  {
+    const Draft draft(folder_ / "graph", "new");
+    EXPECT_EQ(read_file(folder_ / "graph"), "old");
+  }
+  EXPECT_EQ(num_entries(), 1);
+  EXPECT_EQ(error_of_new_file(folder_), 0);
+  EXPECT_EQ(num_entries(), 1);
+}
+
+TEST_F(FileTest, ANewFileTakesNoName) {
+  EXPECT_TRUE(write_new_file(folder_ / "map", "mine"));
+  EXPECT_FALSE(write_new_file(folder_ / "map", "other"));
+  EXPECT_EQ(read_file(folder_ / "map"), "mine");
+  fs::create_symlink("nowhere", folder_ / "link");
+  EXPECT_FALSE(write_new_file(folder_ / "link", "other"));
+  EXPECT_EQ(num_entries(), 2) << "no temporary file is left";
+}
+
+TEST_F(FileTest, FilesThatGoTogetherChangeTogetherOrNotAtAll) {
+  write_file(folder_ / "a", "old");
+  {
+    FilesTogether files;
+    files.add(folder_ / "a", "new");
+    EXPECT_THROW(files.add(folder_ / "nowhere" / "b", "new"), InputError);
+  }
+  EXPECT_EQ(read_file(folder_ / "a"), "old");
+  FilesTogether files;
+  files.add(folder_ / "a", "new");
+  files.add(folder_ / "b", "new");
+  EXPECT_EQ(read_file(folder_ / "a"), "old");
+  files.publish();
+  EXPECT_EQ(read_file(folder_ / "a") + read_file(folder_ / "b"), "newnew");
+  EXPECT_EQ(num_entries(), 2) << "no temporary file is left";
+}
+
 TEST_F(FileTest, TheTemporaryNameIsOneThatNoFileHas) {
   write_file(folder_ / "mine", "old");
   const std::string partial = "graph.partial-" + std::to_string(getpid()) + "-";

@@ -13,29 +13,26 @@ constexpr double kQuiet_s = 0.5;
 constexpr double kRedraw_s = 0.1;
 constexpr int kBarWidth = 24;
 
-bool is_silent = false;  // set by the command line, before there are threads
-
 // Not fmt::print: it throws where stderr cannot be written, and a progress line is not worth the
 // run.
 void print_to_stderr(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 }  // namespace
 
-Progress::Progress(std::string what, int total)
+Progress::Progress(std::string what, int total, bool is_quiet)
     : what_(std::move(what)),
       total_(total),
+      is_quiet_(is_quiet),
       is_terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() { finish(); }
 
-void Progress::silence(bool be_silent) { is_silent = be_silent; }
-
 void Progress::update(int done) {
   done = std::clamp(done, 0, std::max(total_, 0));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const double elapsed_s = elapsed.count();
-  if (is_silent || total_ <= 0 || elapsed_s < kQuiet_s) return;
+  if (is_quiet_ || total_ <= 0 || elapsed_s < kQuiet_s) return;
   const int tenth = 10 * done / total_;
   const bool is_due =
       is_terminal_ ? elapsed_s - last_draw_s_ >= kRedraw_s || done == total_ : tenth > last_tenth_;

@@ -10,15 +10,13 @@ namespace samewhere::core {
 // second.
 class Progress {
  public:
-  Progress(std::string what, int total);
+  // Quiet: without a line, for a command that was asked to print none.
+  Progress(std::string what, int total, bool is_quiet = false);
 
   // `done` items of `total` are finished.
   void update(int done);
   // Ends the line. Called by the destructor too.
   void finish();
-
-  // Of every line from now on; called before any work begins.
-  static void silence(bool be_silent);
 
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -29,6 +27,7 @@ class Progress {
 
   std::string what_;
   int total_;
+  bool is_quiet_;
   bool is_terminal_;
   bool has_drawn_ = false;
   int last_tenth_ = 0;

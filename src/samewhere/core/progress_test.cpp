@@ -35,6 +35,18 @@ TEST(Progress, LongWorkPrintsALineWhereverItIsACountOutsideTheTotalIncluded) {
   EXPECT_THAT(printed, testing::HasSubstr("frames 10/10"));
 }
 
+TEST(Progress, QuietWorkPrintsNothingHoweverLongItIs) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 10, true);
+    const auto start = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(510)) {
+    }
+    progress.update(10);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(Interrupt, TheFirstSignalOnlySetsAFlagAndTheSecondEndsTheProcess) {
   EXPECT_EXIT(
       {

@@ -51,6 +51,27 @@ std::string with_line_feeds(std::string text) {
   return out;
 }
 
+constexpr std::string_view kWhiteSpace = " \t\r\n\v\f";
+
+// Calls `use` for each word between white space.
+template <class Use>
+void for_each_word(std::string_view text, const Use& use) {
+  while (true) {
+    const std::size_t first = text.find_first_not_of(kWhiteSpace);
+    if (first == std::string_view::npos) return;
+    text.remove_prefix(first);
+    const std::size_t length = std::min(text.find_first_of(kWhiteSpace), text.size());
+    use(text.substr(0, length));
+    text.remove_prefix(length);
+  }
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words;
+  for_each_word(text, [&words](std::string_view word) { words.emplace_back(word); });
+  return words;
+}
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '"'; }
 
 // nan and inf are numbers too.
@@ -62,32 +83,46 @@ bool begins_as_number(std::string_view word) {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_text(const std::filesystem::path& path, const SizeLimit& limit) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  std::string bytes = read_file(path);
+  std::string bytes = read_file(path, limit);
   refuse_wide_text(path, bytes);
   if (bytes.starts_with(kByteOrderMark)) bytes.erase(0, kByteOrderMark.size());
   return with_line_feeds(std::move(bytes));
 }
 
+void LineMemory::add(const TextLine& line) {
+  constexpr std::size_t kMost_bytes = 600'000'000;
+  constexpr std::size_t kLine_bytes = 200;  // of itself, as part of a list that grows
+  constexpr std::size_t kWord_bytes = 48;   // the same
+  std::size_t num_words = 1;
+  for (const char c : line.text) num_words += c == ' ' || c == '\t' || c == ',' || c == ';' ? 1 : 0;
+  num_bytes_ += kLine_bytes + line.place.size() + line.text.size() + kWord_bytes * num_words;
+  if (num_bytes_ <= kMost_bytes) return;
+  throw InputError(
+      fmt::format("{}: takes more than {} MB of memory up to here, expected a shorter file",
+                  line.place, kMost_bytes / kMegabyte));
+}
+
 std::vector<TextLine> read_text_lines(const std::filesystem::path& path) {
   std::istringstream text(read_text(path));
   std::vector<TextLine> lines;
+  LineMemory memory;
   int line_number = 0;
   for (std::string line; std::getline(text, line);) {
     ++line_number;
-    std::istringstream in(line);
-    std::vector<std::string> words;
-    for (std::string word; in >> word;) words.push_back(word);
-    if (words.empty() || words.front().starts_with('#')) continue;
-    lines.push_back({fmt::format("{}, line {}", path.string(), line_number), std::move(words),
-                     std::string(trimmed(line))});
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.front() == '#') continue;
+    TextLine added{
+        fmt::format("{}, line {}", path.string(), line_number), {}, std::string(content)};
+    memory.add(added);
+    added.words = words_of(content);
+    lines.push_back(std::move(added));
   }
   return lines;
 }
 
 std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kWhiteSpace = " \t\r\n\v\f";
   const std::size_t first = text.find_first_not_of(kWhiteSpace);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kWhiteSpace) - first + 1);
@@ -96,10 +131,7 @@ std::string_view trimmed(std::string_view text) {
 std::vector<std::string> words_between_commas(std::string_view text) {
   std::string spaced(text);
   std::replace(spaced.begin(), spaced.end(), ',', ' ');
-  std::istringstream in(spaced);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
+  return words_of(spaced);
 }
 
 void drop_column_names(std::vector<TextLine>& lines) {

@@ -88,6 +88,13 @@ TEST(TextLines, NamesOfColumnsAreDropped) {
   }
 }
 
+TEST(TextLines, TheMemoryOfThoseOfOneFileIsBounded) {
+  LineMemory memory;
+  const TextLine many_words{"list.txt, line 7", {}, std::string(8'000'000, ' ')};
+  EXPECT_NO_THROW(memory.add(many_words));
+  EXPECT_THROW(memory.add(many_words), InputError);
+}
+
 TEST(TextLines, WordsMayStandBetweenCommas) {
   EXPECT_THAT(words_between_commas("1, 2,3\t4"), ElementsAre("1", "2", "3", "4"));
 }

@@ -60,12 +60,7 @@ Format format_of(const std::string& text) {
 }
 
 Calibration read_calibration(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kMostBytes = 64U << 20U;  // transforms.json lists all pictures, too
-  const std::string text = core::read_text(path);
-  if (text.size() > kMostBytes) {
-    throw InputError(fmt::format("{}: is {} MiB large, expected a camera file of at most {}",
-                                 path.string(), text.size() >> 20U, kMostBytes >> 20U));
-  }
+  const std::string text = core::read_text(path, core::kCalibrationLimit);
   switch (format_of(text)) {
     case Format::kRows:
       return read_rows_calibration(path);

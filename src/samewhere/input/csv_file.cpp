@@ -24,14 +24,17 @@ std::vector<std::string> words_of(const std::string& content) {
 std::vector<core::TextLine> read_csv_lines(const std::filesystem::path& path) {
   std::istringstream text(core::read_text(path));
   std::vector<core::TextLine> lines;
+  core::LineMemory memory;
   int line_number = 0;
   for (std::string line; std::getline(text, line);) {
     ++line_number;
     std::string content(core::trimmed(line));
     if (content.empty() || content.front() == '#') continue;
-    std::vector<std::string> words = words_of(content);
-    lines.push_back({fmt::format("{}, line {}", path.string(), line_number), std::move(words),
-                     std::move(content)});
+    core::TextLine added{
+        fmt::format("{}, line {}", path.string(), line_number), {}, std::move(content)};
+    memory.add(added);
+    added.words = words_of(added.text);
+    lines.push_back(std::move(added));
   }
   return lines;
 }

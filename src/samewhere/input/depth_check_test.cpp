@@ -1,3 +1,5 @@
+#include <array>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +16,7 @@ std::string doubt(double written, double read) {
   for (int y = 0; y < depth_m.rows; ++y)
     for (int x = 0; x < depth_m.cols; ++x)
       depth_m.at<float>(y, x) = static_cast<float>((0.6 + 3.4 * y / 119.0) * written / read);
-  return doubt_about_depth(depth_m, read).value_or("none");
+  return doubt_about_depth({&depth_m, 1}, read).value_or("none");
 }
 
 TEST(DepthCheck, ARoomReadAsItWasWrittenRaisesNoDoubt) {
@@ -30,9 +32,18 @@ TEST(DepthCheck, AFactorOf5000ReadAsMillimetresIsDoubted) {
   EXPECT_THAT(doubt(5000.0, 1000.0), HasSubstr("input.depth_factor=5000"));
 }
 
+TEST(DepthCheck, OneNearOrFarPictureAmongOthersRaisesNoDoubt) {
+  const cv::Mat near(120, 160, CV_32FC1, cv::Scalar(0.3));
+  const cv::Mat far(120, 160, CV_32FC1, cv::Scalar(14.0));
+  const cv::Mat room(120, 160, CV_32FC1, cv::Scalar(2.0));
+  EXPECT_TRUE(doubt_about_depth({&near, 1}, 5000.0));
+  const std::array pictures = {near, room, room, far, room};
+  EXPECT_FALSE(doubt_about_depth(pictures, 5000.0));
+}
+
 TEST(DepthCheck, APictureWithoutDepthTellsNothing) {
-  EXPECT_FALSE(doubt_about_depth(cv::Mat(120, 160, CV_32FC1, cv::Scalar(0)), 5000.0));
-  EXPECT_FALSE(doubt_about_depth(cv::Mat(), 5000.0));
+  const std::array pictures = {cv::Mat(120, 160, CV_32FC1, cv::Scalar(0)), cv::Mat()};
+  EXPECT_FALSE(doubt_about_depth(pictures, 5000.0));
 }
 
 }  // namespace

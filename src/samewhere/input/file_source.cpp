@@ -93,6 +93,33 @@ double frame_rate_hz(const std::vector<FrameFiles>& frames) {
   return step_s ? 1.0 / *step_s : 0.0;
 }
 
+// Spread evenly over those that have one.
+std::vector<std::filesystem::path> some_depth_files(const std::vector<FrameFiles>& frames) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::filesystem::path> all;
+  for (const FrameFiles& files : frames)
+    if (!files.depth.empty()) all.push_back(files.depth);
+  if (all.size() <= kMost) return all;
+  std::vector<std::filesystem::path> some;
+  for (std::size_t i = 0; i < kMost; ++i) some.push_back(all[i * (all.size() - 1) / (kMost - 1)]);
+  return some;
+}
+
+void warn_of_depth(const Recording& recording) {
+  const std::vector<std::filesystem::path> files = some_depth_files(recording.frames);
+  std::vector<cv::Mat> depths_m;
+  for (const std::filesystem::path& file : files) {
+    try {
+      depths_m.push_back(read_depth(file, recording.depth_units_per_m));
+    } catch (const InputError&) {
+      // told when its frame is due
+    }
+  }
+  if (const auto doubt = doubt_about_depth(depths_m, recording.depth_units_per_m)) {
+    spdlog::warn("{} and {} others: {}", files.front().string(), files.size() - 1, *doubt);
+  }
+}
+
 }  // namespace
 
 FileSource::FileSource(std::string name, Recording recording) : recording_(std::move(recording)) {
@@ -133,10 +160,7 @@ std::optional<core::Frame> FileSource::next() {
   if (!files.depth.empty()) {
     frame.depth_m = read_depth(files.depth, recording_.depth_units_per_m);
     check_size(files.depth, *frame.depth_m, sizes_px_.front());
-    if (!std::exchange(is_depth_checked_, true)) {
-      const auto doubt = doubt_about_depth(*frame.depth_m, recording_.depth_units_per_m);
-      if (doubt) spdlog::warn("{}: {}", files.depth.string(), *doubt);
-    }
+    if (!std::exchange(is_depth_checked_, true)) warn_of_depth(recording_);
   }
   const auto& imu = recording_.imu;
   for (; next_imu_ < imu.size() && imu[next_imu_].stamp_s <= files.stamp_s; ++next_imu_) {

@@ -14,7 +14,8 @@ namespace samewhere::input {
 // Streams a recording: one frame is read per call of next(), nothing is kept. The first image of
 // each camera is read once more on construction: its size belongs to the camera. A frame carries
 // the inertial samples after the frame before it, up to its own stamp; the first all up to there.
-// Warns in the log where the first depth contradicts its units (depth_check.hpp).
+// Warns in the log, with the first depth, where a handful of depth pictures from the whole
+// recording contradict their units (depth_check.hpp).
 class FileSource : public core::Source {
  public:
   // Throws InputError if the camera file or a first image is broken, or if the calibration belongs

@@ -6,6 +6,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/folder_lock.hpp>
 #include <samewhere/map/full_bundle.hpp>
 #include <samewhere/pipeline/by_hand.hpp>
 #include <samewhere/pipeline/correction.hpp>
@@ -187,8 +188,9 @@ ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const c
 
 ChangedRun change_run(const std::filesystem::path& folder, std::size_t candidate, Word word,
                       const std::vector<std::string>& assignments) {
+  const core::FolderLock lock(folder);  // no run may replace what is there meanwhile
   const Config config = config_of_run(folder, assignments);
-  core::Ledger ledger = ledger_of_run(folder);
+  core::Ledger ledger = ledger_in_step(folder, &lock);
   const core::LedgerRow row = row_of(ledger, candidate, folder);
   const std::string frames_csv = core::read_file(folder / "frames.csv");
   scene::MapFile file = scene::MapFile::open(folder / "map.sw", scene::MapAccess::kExtend);

@@ -42,9 +42,9 @@ enum class Word { kReject, kForce };
 
 // The same in the folder of a finished run: map.sw, in one transaction, then its lists, each whole
 // or not at all (run_lists.hpp: cut short, they are written anew from the map). The assignments
-// "section.key=value" change the run's config. Throws InputError also if there is no such
-// candidate, the folder has no map, one that another run has extended, or one that does not go with
-// its frames; then nothing is written.
+// "section.key=value" change the run's config. Throws InputError also if another program is writing
+// into the folder, there is no such candidate, the folder has no map, one that another run has
+// extended, or one that does not go with its frames; then nothing is written.
 ChangedRun change_run(const std::filesystem::path& folder, std::size_t candidate, Word word,
                       const std::vector<std::string>& assignments);
 

@@ -13,6 +13,7 @@
 #include <samewhere/pipeline/by_hand.hpp>
 #include <samewhere/pipeline/map_export.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/pipeline/run_lists.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/pipeline/test_rooms.hpp>
 #include <samewhere/report/frames.hpp>
@@ -231,6 +232,26 @@ TEST_F(ByHandInAFolder, ForcingAndRejectingAreWrittenDown) {
   EXPECT_THAT(core::reason_of(verdict), HasSubstr("by hand"));
   EXPECT_TRUE(report::match_from_query_of(verdict)) << "it may be forced once more";
   expect_files_of_map();
+}
+
+TEST_F(ByHandInAFolder, NothingIsChangedWhileAnotherProgramWritesIntoTheFolder) {
+  {
+    const core::FolderLock of_another(folder_.root());
+    EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("another program is writing"));
+  }
+  const std::string old_ledger = text_of("loops.json");
+  change_run(folder_.root(), 0, Word::kForce, {});
+  // cut short: the lists are older than the map
+  folder_.write("loops.json", old_ledger);
+  folder_.write("loops.json.partial-17-0", "{");
+  {
+    const core::FolderLock lock(folder_.root());
+    ledger_of_run(folder_.root());
+    EXPECT_EQ(text_of("loops.json"), old_ledger) << "of another program";
+    ledger_in_step(folder_.root(), &lock);
+    EXPECT_NE(text_of("loops.json"), old_ledger) << "of the caller";
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.root() / "loops.json.partial-17-0"));
 }
 
 // Killed after the map was committed and before, or while, the lists were written.

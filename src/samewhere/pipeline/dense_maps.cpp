@@ -70,8 +70,8 @@ KeyframeStamps read_keyframes(const std::filesystem::path& path) {
   return stamps_s;
 }
 
-Poses read_keyframe_poses(const std::filesystem::path& run) {
-  if (std::filesystem::exists(run / "loops.json")) ledger_in_step(run);
+Poses read_keyframe_poses(const std::filesystem::path& run, const core::FolderLock* held) {
+  if (std::filesystem::exists(run / "loops.json")) ledger_in_step(run, held);
   const core::Trajectory trajectory = core::read_tum(run / "trajectory.tum");
   std::map<std::int64_t, core::Rigid3> pose_at;
   for (const auto& pose : trajectory) pose_at[in_units(pose.stamp_s)] = pose.world_from_camera;
@@ -188,23 +188,33 @@ void warn_of_coarseness(const Fused& fused, const dense::Config& config) {
   }
 }
 
-void write_cloud(const std::vector<dense::CloudPoint>& cloud, const DenseFiles& files,
-                 DenseOutcome& outcome) {
+// What has been made: the files, without their names yet, and what is said of them.
+struct Made {
+  core::FilesTogether files;
+  DenseOutcome outcome;
+};
+
+std::filesystem::path description_of(const DenseFiles& files) {
+  std::filesystem::path description = files.grid;
+  return description += ".yaml";
+}
+
+void write_cloud(const std::vector<dense::CloudPoint>& cloud, const DenseFiles& files, Made& made) {
   std::vector<report::ColouredPoint> points;
   points.reserve(cloud.size());
   for (const auto& point : cloud) points.push_back({point.in_world, point.rgb});
-  core::write_file(files.cloud, report::ply_bytes(points));
-  outcome.figures.push_back(
+  made.files.add(files.cloud, report::ply_bytes(points));
+  made.outcome.figures.push_back(
       {"cloud", fmt::format("{}, {} points", files.cloud.string(), points.size())});
 }
 
 void write_grid(const Fused& fused, const std::vector<dense::CloudPoint>& cloud,
-                const Config& config, const DenseFiles& files, DenseOutcome& outcome) {
+                const Config& config, const DenseFiles& files, Made& made) {
   const auto floor = dense::find_floor(cloud, fused.cloud.voxel_m(), fused.cameras, config.dense,
                                        static_cast<std::uint64_t>(config.seed));
   if (!floor) {
-    outcome.no_grid = "no floor was found: " + floor.error();
-    outcome.figures.push_back({"grid", "none: " + *outcome.no_grid});
+    made.outcome.no_grid = "no floor was found: " + floor.error();
+    made.outcome.figures.push_back({"grid", "none: " + *made.outcome.no_grid});
     return;
   }
   const core::Rigid3 map_from_world =
@@ -213,15 +223,23 @@ void write_grid(const Fused& fused, const std::vector<dense::CloudPoint>& cloud,
       dense::cast_grid(fused.scans.all(), *floor, map_from_world, config.dense);
   std::filesystem::path picture = files.grid;
   picture += ".pgm";
-  std::filesystem::path description = files.grid;
-  description += ".yaml";
-  core::write_file(picture, dense::pgm_bytes(grid));
-  core::write_file(description, dense::map_yaml(grid, picture.filename().string()));
-  outcome.figures.push_back(
+  const std::filesystem::path description = description_of(files);
+  made.files.add(picture, dense::pgm_bytes(grid));
+  made.files.add(description, dense::map_yaml(grid, picture.filename().string()));
+  made.outcome.figures.push_back(
       {"grid",
        fmt::format("{}, {} x {} cells of {} m, {:.1f} m2 free, {:.1f} m2 occupied",
                    description.string(), grid.log_odds.cols, grid.log_odds.rows, grid.cell_m,
                    grid.area_m2(dense::Cell::kFree), grid.area_m2(dense::Cell::kOccupied))});
+}
+
+// So that the description of an earlier grid never lies beside the picture of another.
+void publish(Made& made, const DenseFiles& files) {
+  if (!files.grid.empty() && !made.outcome.no_grid) {
+    std::error_code ignored;
+    std::filesystem::remove(description_of(files), ignored);
+  }
+  made.files.publish();
 }
 
 // Before the work, so that nobody waits for files that cannot be written.
@@ -235,23 +253,24 @@ void check_folders(const DenseFiles& files) {
 }  // namespace
 
 DenseOutcome make_dense_maps(const std::filesystem::path& run, const Config& config,
-                             const DenseFiles& files) {
-  const Poses poses = read_keyframe_poses(run);
+                             const DenseFiles& files, const core::FolderLock* held) {
+  const Poses poses = read_keyframe_poses(run, held);
   check_folders(files);
   const std::unique_ptr<Fused> fused = fuse(config, poses, files);
   warn_of_coarseness(*fused, config.dense);
-  DenseOutcome outcome;
-  outcome.figures.push_back({"keyframes", std::to_string(fused->cameras.size())});
+  Made made;
+  made.outcome.figures.push_back({"keyframes", std::to_string(fused->cameras.size())});
   const std::vector<dense::CloudPoint> cloud = fused->cloud.points();
-  if (!files.cloud.empty()) write_cloud(cloud, files, outcome);
+  if (!files.cloud.empty()) write_cloud(cloud, files, made);
   if (!files.octree.empty()) {
     const std::string bytes = fused->octree.bt_bytes();
-    core::write_file(files.octree, bytes);
-    outcome.figures.push_back(
+    made.files.add(files.octree, bytes);
+    made.outcome.figures.push_back(
         {"octree", fmt::format("{}, {} bytes", files.octree.string(), bytes.size())});
   }
-  if (!files.grid.empty()) write_grid(*fused, cloud, config, files, outcome);
-  return outcome;
+  if (!files.grid.empty()) write_grid(*fused, cloud, config, files, made);
+  publish(made, files);
+  return std::move(made.outcome);
 }
 
 }  // namespace samewhere::pipeline

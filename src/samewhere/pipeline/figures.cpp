@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <samewhere/pipeline/figures.hpp>
+#include <samewhere/report/figure.hpp>
 #include <samewhere/report/frames.hpp>
 #include <samewhere/report/funnel.hpp>
 
 namespace samewhere::pipeline {
 namespace {
 
+using report::figure;
 using report::Figure;
 
 int count_refused(const std::vector<const core::LedgerRow*>& rows, core::Refusal stage) {
@@ -35,32 +37,29 @@ std::vector<evaluate::Match> as_matches(const std::vector<report::ScoredPair>& p
   return matches;
 }
 
-std::string percent(int part, int whole) {
-  return fmt::format("{} of {} ({:.1f} %)", part, whole, whole > 0 ? 100.0 * part / whole : 0.0);
+Figure figure_of_share(const char* name, int part, int whole) {
+  return figure(name, "{} of {} ({:.1f} %)", part, whole, whole > 0 ? 100.0 * part / whole : 0.0);
 }
 
 std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
-  std::vector<Figure> figures = {
-      {"frames with a measured pose", percent(evaluation.num_measured, evaluation.num_frames)}};
+  std::vector<Figure> figures = {figure_of_share("frames with a measured pose",
+                                                 evaluation.num_measured, evaluation.num_frames)};
   if (const auto& ate = evaluation.ate) {
-    figures.push_back(
-        {evaluation.is_scale_free ? "ATE RMSE (median, max), scale aligned"
-                                  : "ATE RMSE (median, max)",
-         fmt::format("{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m)});
+    figures.push_back(figure(evaluation.is_scale_free ? "ATE RMSE (median, max), scale aligned"
+                                                      : "ATE RMSE (median, max)",
+                             "{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m));
   }
   if (evaluation.path_m > 0.0) {
-    figures.push_back({"path length", fmt::format("{:.2f} m", evaluation.path_m)});
+    figures.push_back(figure("path length", "{:.2f} m", evaluation.path_m));
   }
   if (const auto& ate = evaluation.odometry_ate) {
-    figures.push_back({"ATE RMSE before loop closing", fmt::format("{:.4f} m", ate->rmse_m)});
+    figures.push_back(figure("ATE RMSE before loop closing", "{:.4f} m", ate->rmse_m));
   }
   if (const auto& rpe = evaluation.rpe) {
-    figures.push_back(
-        {"rotational error over 1 s, median (RMSE)",
-         fmt::format("{:.2f} degrees ({:.2f})", rpe->rotation_median_deg, rpe->rotation_rmse_deg)});
-    figures.push_back(
-        {"translational error over 1 s, median (RMSE)",
-         fmt::format("{:.4f} m ({:.4f})", rpe->translation_median_m, rpe->translation_rmse_m)});
+    figures.push_back(figure("rotational error over 1 s, median (RMSE)", "{:.2f} degrees ({:.2f})",
+                             rpe->rotation_median_deg, rpe->rotation_rmse_deg));
+    figures.push_back(figure("translational error over 1 s, median (RMSE)", "{:.4f} m ({:.4f})",
+                             rpe->translation_median_m, rpe->translation_rmse_m));
   }
   return figures;
 }
@@ -112,11 +111,11 @@ bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& foun
 }
 
 Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
-  return {
+  return figure(
       fmt::format("squared error of {} over its belief",
                   num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
-      fmt::format("{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
-                  drift.band_low, drift.band_high, drift.median, drift.num_motions)};
+      "{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
+      drift.band_low, drift.band_high, drift.median, drift.num_motions);
 }
 
 }  // namespace
@@ -257,62 +256,55 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   for (const auto& [num_edges, drift] : evaluation.drift_model)
     figures.push_back(figure_of_drift(num_edges, drift));
   const auto& loops = evaluation.loops;
-  figures.push_back({"candidates judged", std::to_string(evaluation.num_candidates)});
-  figures.push_back(
-      {"loops accepted: right / wrong / unknown",
-       fmt::format("{} / {} / {}", loops.num_right, loops.num_wrong, loops.num_unknown)});
+  figures.push_back(figure("candidates judged", "{}", evaluation.num_candidates));
+  figures.push_back(figure("loops accepted: right / wrong / unknown", "{} / {} / {}",
+                           loops.num_right, loops.num_wrong, loops.num_unknown));
   if (evaluation.num_of_known_map > 0) {
-    figures.push_back(
-        {"candidates of the known map / accepted",
-         fmt::format("{} / {}", evaluation.num_of_known_map, evaluation.num_known_places)});
+    figures.push_back(figure("candidates of the known map / accepted", "{} / {}",
+                             evaluation.num_of_known_map, evaluation.num_known_places));
   }
   if (evaluation.num_impostors_matching) {
-    figures.push_back({"of the wrong ones, impostors", std::to_string(loops.num_impostors)});
-    figures.push_back({"impostors among the candidates with enough matches",
-                       std::to_string(*evaluation.num_impostors_matching)});
+    figures.push_back(figure("of the wrong ones, impostors", "{}", loops.num_impostors));
+    figures.push_back(figure("impostors among the candidates with enough matches", "{}",
+                             *evaluation.num_impostors_matching));
   }
   if (loops.num_revisits > 0) {
-    figures.push_back(
-        {"revisits closed", fmt::format("{} of {}", loops.num_closed, loops.num_revisits)});
+    figures.push_back(figure("revisits closed", "{} of {}", loops.num_closed, loops.num_revisits));
   }
   if (const auto& again = evaluation.found_again; !again.loops.empty()) {
-    figures.push_back(
-        {"lost and found again: right / wrong / unknown",
-         fmt::format("{} / {} / {}", again.num_right, again.num_wrong, again.num_unknown)});
+    figures.push_back(figure("lost and found again: right / wrong / unknown", "{} / {} / {}",
+                             again.num_right, again.num_wrong, again.num_unknown));
     if (loops.num_revisits > 0) {
-      figures.push_back({"revisits closed, or found again in",
-                         fmt::format("{} of {}", evaluation.num_rejoined, loops.num_revisits)});
+      figures.push_back(figure("revisits closed, or found again in", "{} of {}",
+                               evaluation.num_rejoined, loops.num_revisits));
     }
   }
   if (evaluation.num_refused_by_graph + evaluation.num_withdrawn > 0) {
-    figures.push_back(
-        {"loops refused by the pose graph: at once / later",
-         fmt::format("{} / {}", evaluation.num_refused_by_graph, evaluation.num_withdrawn)});
+    figures.push_back(figure("loops refused by the pose graph: at once / later", "{} / {}",
+                             evaluation.num_refused_by_graph, evaluation.num_withdrawn));
   }
   return figures;
 }
 
 std::vector<Figure> figures_of(const RecognitionEvaluation& evaluation) {
-  std::vector<Figure> figures = {{"candidates judged", std::to_string(evaluation.num_candidates)}};
+  std::vector<Figure> figures = {figure("candidates judged", "{}", evaluation.num_candidates)};
   if (const auto& counts = evaluation.accepted) {
-    figures.push_back(
-        {"accepted: right / wrong / near",
-         fmt::format("{} / {} / {}", counts->num_right, counts->num_wrong, counts->num_near)});
+    figures.push_back(figure("accepted: right / wrong / near", "{} / {} / {}", counts->num_right,
+                             counts->num_wrong, counts->num_near));
   } else {
-    figures.push_back({"accepted", std::to_string(evaluation.num_accepted)});
+    figures.push_back(figure("accepted", "{}", evaluation.num_accepted));
   }
   if (evaluation.num_impostors) {
-    figures.push_back({"of the wrong ones, impostors", std::to_string(*evaluation.num_impostors)});
+    figures.push_back(figure("of the wrong ones, impostors", "{}", *evaluation.num_impostors));
   }
   if (const auto& curve = evaluation.curve) {
-    figures.push_back({"queries, of these with a loop",
-                       fmt::format("{}, {}", curve->num_queries, curve->num_with_loop)});
-    figures.push_back({"AUC", fmt::format("{:.4f}", curve->auc)});
+    figures.push_back(figure("queries, of these with a loop", "{}, {}", curve->num_queries,
+                             curve->num_with_loop));
+    figures.push_back(figure("AUC", "{:.4f}", curve->auc));
     figures.push_back(
-        {"recall at 100 % precision", fmt::format("{:.4f}", curve->recall_at_full_precision)});
-    figures.push_back({"precision at recall .35, .70",
-                       fmt::format("{:.4f}, {:.4f}", curve->precision_at_recall_35,
-                                   curve->precision_at_recall_70)});
+        figure("recall at 100 % precision", "{:.4f}", curve->recall_at_full_precision));
+    figures.push_back(figure("precision at recall .35, .70", "{:.4f}, {:.4f}",
+                             curve->precision_at_recall_35, curve->precision_at_recall_70));
   }
   return figures;
 }

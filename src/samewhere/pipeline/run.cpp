@@ -20,6 +20,7 @@
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/pipeline/run.hpp>
+#include <samewhere/report/figure.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 
@@ -42,8 +43,10 @@ RunOutcome start_outcome(const Config& config, const core::SourceInfo& info) {
 class FrameFeed {
  public:
   // `source` and `outcome` outlive the feed.
-  FrameFeed(core::Source& source, RunOutcome& outcome)
-      : source_(source), outcome_(outcome), progress_("frames", source.info().num_frames) {}
+  FrameFeed(core::Source& source, RunOutcome& outcome, bool is_quiet)
+      : source_(source),
+        outcome_(outcome),
+        progress_("frames", source.info().num_frames, is_quiet) {}
 
   std::optional<core::Frame> next() {
     if (num_given_ > 0) progress_.update(num_given_ + num_dropped_);
@@ -70,7 +73,7 @@ class FrameFeed {
     report::RunRecord& record = outcome_.record;
     record.timings.add(timings_);
     if (source_.info().is_live) {
-      record.figures.push_back({"frames dropped", fmt::format("{}", num_dropped_)});
+      record.figures.push_back(report::figure("frames dropped", "{}", num_dropped_));
     }
   }
 
@@ -183,10 +186,10 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
   }
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"no start, at the end", slam.why_not_started()});
-  record.figures.push_back({"starts given up", fmt::format("{}", slam.num_starts_given_up())});
-  record.figures.push_back(
-      {"keyframes / landmarks",
-       fmt::format("{} / {}", num_live(slam.map().keyframes), num_live(slam.map().landmarks))});
+  record.figures.push_back(report::figure("starts given up", "{}", slam.num_starts_given_up()));
+  record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
+                                          num_live(slam.map().keyframes),
+                                          num_live(slam.map().landmarks)));
   record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
   record.truth = aligned_truth(evaluation, truth);
 }
@@ -223,7 +226,7 @@ std::optional<std::string> note_on(const core::Ledger& ledger, const Config& con
 }  // namespace
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& given,
-                    const MapPlan& plan) {
+                    const MapPlan& plan, bool is_quiet) {
   const auto source = read_ahead(for_slam(std::move(unbuffered), given), given);
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
@@ -233,7 +236,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
   MappedSlam mapped(config, is_monocular ? DepthFrom::kMotion : DepthFrom::kSensor, plan);
   const Slam& slam = mapped.slam();
   std::vector<std::string> names;
-  FrameFeed feed(*source, outcome);
+  FrameFeed feed(*source, outcome, is_quiet);
   while (std::optional<core::Frame> frame = feed.next()) {
     const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
     mapped.feed(*frame);
@@ -255,14 +258,14 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const Config& give
 }
 
 RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const Config& given,
-                           std::function<void()> begin) {
+                           std::function<void()> begin, bool is_quiet) {
   const auto source = read_ahead(std::move(unbuffered), given);
   const core::Truth truth = source->truth();
   Config config = with_window_in_frames(given, source->info());
   config.verify.require_pose = false;  // there is no map that could use one
   RunOutcome outcome = start_outcome(config, source->info());
   Recognition recognition(config);
-  FrameFeed feed(*source, outcome);
+  FrameFeed feed(*source, outcome, is_quiet);
   const auto run = config.threads ? run_in_threads : run_in_turn;
   const auto next = [&] {
     auto frame = feed.next();

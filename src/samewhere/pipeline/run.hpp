@@ -28,12 +28,14 @@ struct RunOutcome {
 // camera (is_live), or a recording that is played (input.realtime), always the newest frame; how
 // many were dropped is a figure. Stops early at Ctrl-C. Throws InputError if the source lacks the
 // camera file that SLAM needs, or if the known map cannot be used or was made with other settings.
+// is_quiet: without the progress line.
 RunOutcome run_slam(std::unique_ptr<core::Source> source, const Config& config,
-                    const MapPlan& plan = {});
+                    const MapPlan& plan = {}, bool is_quiet = false);
 
 // Recognition alone: every frame is a query against all older ones. Needs neither depth nor camera.
-// `begin`, if any, is called once, when there is a first frame.
+// `begin`, if any, is called once, when there is a first frame. is_quiet: without the progress
+// line.
 RunOutcome run_recognition(std::unique_ptr<core::Source> source, const Config& config,
-                           std::function<void()> begin = {});
+                           std::function<void()> begin = {}, bool is_quiet = false);
 
 }  // namespace samewhere::pipeline

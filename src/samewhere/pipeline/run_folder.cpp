@@ -16,6 +16,7 @@
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/run_folder.hpp>
 #include <samewhere/pipeline/run_lists.hpp>
+#include <samewhere/report/figure.hpp>
 #include <samewhere/report/frames.hpp>
 #include <samewhere/report/timing_json.hpp>
 #include <samewhere/scene/map_file.hpp>
@@ -193,15 +194,15 @@ std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,
         {static_cast<int>(pair.query.index()), static_cast<int>(pair.match.index()), pair.score});
   }
   const evaluate::WalkCounts counts = count_walk(evaluate::read_walk(walk), accepted);
-  return {{"loops accepted", std::to_string(counts.num_loops)},
-          {"of these between two floors (wrong)", std::to_string(counts.num_wrong)},
-          {"on one floor, of these in one clip",
-           fmt::format("{}, {}", counts.num_same_floor, counts.num_same_clip)}};
+  return {report::figure("loops accepted", "{}", counts.num_loops),
+          report::figure("of these between two floors (wrong)", "{}", counts.num_wrong),
+          report::figure("on one floor, of these in one clip", "{}, {}", counts.num_same_floor,
+                         counts.num_same_clip)};
 }
 
 report::Table stages_of_folder(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "timing.json";
-  return report::stage_table(core::read_file(path), path.string());
+  return report::stage_table(core::read_file(path, core::kTimingLimit), path.string());
 }
 
 }  // namespace samewhere::pipeline

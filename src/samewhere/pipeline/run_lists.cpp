@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <tuple>
 
 #include <spdlog/spdlog.h>
@@ -68,7 +69,10 @@ bool holds_one_run(const scene::MapVersion& map) {
   return !map.keyframes.empty() && map.keyframes.back().view.frame.session() == 0;
 }
 
-void write_anew(const std::filesystem::path& folder, const core::Ledger& ledger) {
+void write_anew(const std::filesystem::path& folder, const core::Ledger& ledger,
+                const core::FolderLock* held) {
+  std::optional<core::FolderLock> lock;
+  if (held == nullptr) lock.emplace(folder);
   // no other program changes the map or the lists meanwhile
   scene::MapFile file = scene::MapFile::open(folder / "map.sw", scene::MapAccess::kExtend);
   const scene::StoredMap stored = file.load();
@@ -93,10 +97,15 @@ RunLists lists_of(const scene::StoredMap& stored, const core::Ledger& ledger,
 }
 
 void write_lists(const RunLists& lists, const std::filesystem::path& folder) {
-  for (const auto& [name, text] : lists) core::write_file(folder / name, text);
+  core::FilesTogether files;
+  for (const auto& [name, text] : lists) {
+    core::remove_partial_files(folder / name);
+    files.add(folder / name, text);
+  }
+  files.publish();
 }
 
-core::Ledger ledger_in_step(const std::filesystem::path& folder) {
+core::Ledger ledger_in_step(const std::filesystem::path& folder, const core::FolderLock* held) {
   core::Ledger ledger = report::read_loops_json(folder / "loops.json");
   const std::filesystem::path map = folder / "map.sw";
   if (!std::filesystem::exists(map)) return ledger;
@@ -104,7 +113,7 @@ core::Ledger ledger_in_step(const std::filesystem::path& folder) {
     const core::Ledger later = report::read_ledger_rows(rows_since_by_hand(map), map.string());
     core::Ledger of_map = with_last_verdicts(ledger, later);
     if (report::loops_json(of_map) == report::loops_json(ledger)) return ledger;
-    write_anew(folder, of_map);
+    write_anew(folder, of_map, held);
     return of_map;
   } catch (const core::InputError& error) {
     spdlog::warn("{}; whether the lists of {} go with its map is not known", error.what(),

@@ -15,6 +15,7 @@
 #include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/self_calibration.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/report/figure.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -113,9 +114,9 @@ std::optional<SelfCalibration> calibrate_if_unknown(std::unique_ptr<core::Source
 
 report::Figure focal_length_figure(const SelfCalibration& calibration) {
   const double f_px = calibration.camera.fx_px;
-  if (!calibration.sigma_px) return {"focal length", fmt::format("{:.1f} px, guessed", f_px)};
-  return {"focal length", fmt::format("{:.1f} px +- {:.1f} (guessed {:.1f} px)", f_px,
-                                      *calibration.sigma_px, calibration.guessed_px)};
+  if (!calibration.sigma_px) return report::figure("focal length", "{:.1f} px, guessed", f_px);
+  return report::figure("focal length", "{:.1f} px +- {:.1f} (guessed {:.1f} px)", f_px,
+                        *calibration.sigma_px, calibration.guessed_px);
 }
 
 }  // namespace samewhere::pipeline

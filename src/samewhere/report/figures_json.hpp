@@ -8,9 +8,10 @@
 namespace samewhere::report {
 
 // Figures for other programs: an object from the name of each figure to its value as it is shown
-// and the numbers in it, in the order of the figures. `title` is what was run.
+// and the numbers in it, unrounded (null: not finite), in the order of the figures. `title` is what
+// was run.
 //   {"title": "office", "figures": {"ATE RMSE (median, max)": {"value": "0.01 m (0.01, 0.02)",
-//   "numbers": [0.01, 0.01, 0.02]}}}
+//   "numbers": [0.0133, 0.0126, 0.0254]}}}
 std::string figures_json(const std::string& title, const std::vector<Figure>& figures);
 
 }  // namespace samewhere::report

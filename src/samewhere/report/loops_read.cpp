@@ -155,26 +155,107 @@ class Entry {
   core::LedgerRow row_;
 };
 
+// Counts what is in one entry while it is parsed. Ours have some 40 values; a value takes up to 100
+// bytes of memory for three of the file.
+class EntrySize {
+ public:
+  void begin() { num_values_ = 0; }
+  void count() {
+    constexpr int kMax = 1000;
+    if (++num_values_ > kMax)
+      throw core::InputError(fmt::format("has more than {} values, expected a candidate", kMax));
+  }
+
+ private:
+  int num_values_ = 0;
+};
+
+// Reads loops.json entry by entry: the document is never in memory as a whole, nor is what does not
+// belong into it.
+class Document {
+ public:
+  core::Ledger read(const std::string& text) && {
+    const Json::parser_callback_t visit = [this](int depth, Event event, const Json& json) {
+      return this->visit(depth, event, json);
+    };
+    const Json rest = Json::parse(text, visit);
+    is_parsed_ = true;
+    const int version = rest.at("version").get<int>();
+    if (version != 1) throw core::InputError(fmt::format("version {}; expected 1", version));
+    rest.at("candidates");
+    return std::move(ledger_);
+  }
+
+  // The entry that it stands at: "candidate 7: ".
+  std::string where() const {
+    return is_in_list_ && !is_parsed_ ? fmt::format("candidate {}: ", ledger_.size()) : "";
+  }
+
+ private:
+  using Event = Json::parse_event_t;
+  static constexpr int kKeyDepth = 1;
+  static constexpr int kEntryDepth = 2;
+
+  // Whether the value is kept.
+  bool visit(int depth, Event event, const Json& json) {
+    if (depth == kKeyDepth && event == Event::key) {
+      key_ = json.get<std::string>();
+      return key_ == "version" || key_ == "candidates";
+    }
+    if (depth == kKeyDepth && key_ == "candidates") visit_list(event);
+    if (!is_in_list_) return depth == 0 || event == Event::value || key_ == "candidates";
+    if (depth >= kEntryDepth) return visit_entry(depth, event, json);
+    return true;
+  }
+
+  void visit_list(Event event) {
+    if (event != Event::array_start && event != Event::array_end)
+      throw core::InputError("\"candidates\" is no list");
+    is_in_list_ = event == Event::array_start;
+  }
+
+  bool visit_entry(int depth, Event event, const Json& json) {
+    if (depth > kEntryDepth) {
+      size_.count();
+      return true;
+    }
+    if (event == Event::object_start) {
+      size_.begin();
+      return true;
+    }
+    if (event != Event::object_end) throw core::InputError("is no object");
+    ledger_.push_back(Entry(json, ledger_.size()).row());
+    return false;
+  }
+
+  core::Ledger ledger_;
+  EntrySize size_;
+  std::string key_;
+  bool is_in_list_ = false;
+  bool is_parsed_ = false;
+};
+
+// One entry by itself.
+Json parse_entry(const std::string& text) {
+  EntrySize size;
+  return Json::parse(text, [&size](int, Json::parse_event_t, const Json&) {
+    size.count();
+    return true;
+  });
+}
+
 }  // namespace
 
 core::Ledger read_loops_json(const std::filesystem::path& path) {
   const std::string text = core::read_file(path);
-  std::string where;
+  Document document;
   try {
-    const Json document = Json::parse(text);
-    const int version = document.at("version").get<int>();
-    if (version != 1) throw core::InputError(fmt::format("version {}; expected 1", version));
-    core::Ledger ledger;
-    for (const Json& json : document.at("candidates")) {
-      where = fmt::format("candidate {}: ", ledger.size());
-      ledger.push_back(Entry(json, ledger.size()).row());
-    }
-    return ledger;
+    return std::move(document).read(text);
   } catch (const Json::exception& error) {
     throw core::InputError(fmt::format("{}: {}expected what `samewhere run` writes, but {}",
-                                       path.string(), where, error.what()));
+                                       path.string(), document.where(), error.what()));
   } catch (const core::InputError& error) {
-    throw core::InputError(fmt::format("{}: {}{}", path.string(), where, error.what()));
+    throw core::InputError(fmt::format("{}: {}{}", path.string(), document.where(), error.what()));
   }
 }
 
@@ -188,7 +269,7 @@ core::Ledger read_ledger_rows(const std::vector<std::string>& rows, const std::s
                       name, ledger.size(), why));
     };
     try {
-      const Json json = Json::parse(row);
+      const Json json = parse_entry(row);
       ledger.push_back(Entry(json, ledger.size()).row());
     } catch (const Json::exception& error) {
       refuse(error.what());

@@ -162,6 +162,24 @@ TEST_F(LoopsRead, AnotherPlaceThatExplainsTheViewIsReadBack) {
   EXPECT_EQ(other->apart_m, 5.9);
 }
 
+TEST_F(LoopsRead, WhatIsNoCandidateTakesNoMemory) {
+  const auto with = [](const std::string& entries) {
+    return R"({"version": 1, "candidates": [)" + entries + "]}";
+  };
+  std::string many = "0";
+  for (int i = 0; i < 2000; ++i) many += ",0";
+  EXPECT_THAT(complaint(with(R"({"query": [)" + many + "]}")),
+              HasSubstr("candidate 0: has more than 1000 values"));
+  EXPECT_THAT(complaint(with(std::string(1'000'000, '['))), HasSubstr("candidate 0: is no object"));
+  EXPECT_THAT(complaint(with(R"({"query": )" + std::string(1'000'000, '['))),
+              HasSubstr("candidate 0: has more than 1000 values"));
+  EXPECT_THAT(complaint(with("7")), HasSubstr("candidate 0: is no object"));
+  EXPECT_THAT(complaint(R"({"version": 1, "candidates": {"a": {}}})"), HasSubstr("is no list"));
+  EXPECT_THAT(complaint(R"({"version": 1})"), HasSubstr("candidates"));
+  EXPECT_THAT(complaint("[]"), HasSubstr(path_.string()));
+  EXPECT_TRUE(read(R"({"more": [[1], {"version": 3}], "candidates": [], "version": 1})").empty());
+}
+
 TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})

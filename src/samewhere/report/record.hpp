@@ -32,8 +32,9 @@ struct ColouredPoint {
 
 // One measured figure as it is shown to a person.
 struct Figure {
-  std::string name;   // "ATE RMSE"
-  std::string value;  // "0.021 m"
+  std::string name;                  // "ATE RMSE"
+  std::string value;                 // "0.021 m"
+  std::vector<double> numbers = {};  // in it, unrounded, in their order (figure.hpp)
 };
 
 // A finished run, as plain data.

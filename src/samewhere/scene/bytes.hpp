@@ -41,6 +41,12 @@ class ByteWriter {
     for (std::size_t i = 0; i < count; ++i) put(values[i]);
   }
 
+  // What only some rows have, at their end: nothing is written where it is not there.
+  template <class T>
+  void at_end(const std::optional<T>& value) {
+    if (value) put(*value);
+  }
+
   const std::string& bytes() const { return bytes_; }
 
  private:
@@ -112,6 +118,11 @@ class ByteReader {
   template <class T>
   void row(T* values, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) get(values[i]);
+  }
+  template <class T>
+  void at_end(std::optional<T>& value) {
+    value.reset();
+    if (!left_.empty()) get(value.emplace());
   }
   void finish() const {
     if (!left_.empty()) damaged("holds more than expected");

@@ -23,7 +23,7 @@ TEST_F(MapFiles, WhatIsNoMapIsToldApart) {
   EXPECT_THAT(complaint([&] { MapFile::create(path(), {}); }),
               HasSubstr("m.sw: is there already; expected a new file"));
   EXPECT_THAT(complaint([&] { MapFile::create(path("no/folder/m.sw"), {}); }),
-              HasSubstr("m.sw: cannot be opened"));
+              HasSubstr("m.sw: cannot be written"));
 
   std::string bytes = core::read_file(path());
   bytes[63] = 9;  // user_version, big-endian, at 60

@@ -43,6 +43,22 @@ TEST_F(MapFiles, WhatIsLoadedIsWhatWasSavedWhateverTheEdits) {
   }
 }
 
+TEST_F(MapFiles, ACameraWhosePicturesWereTurnedIsStillToldAsItWasTaken) {
+  RandomEdits edits(1);
+  MapVersion map;
+  while (map.keyframes.size() < 2) map = apply(std::move(map), edits.next(map));
+  core::Rig rig = *map.keyframes[0].view.rig;
+  rig.body_from_taken_camera = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY())), {0.1, 0.2, 0.3}};
+  map.keyframes.edit(0).view.rig = std::make_shared<const core::Rig>(rig);
+  MapFile::create(path(), {}).commit(map, {});
+  const MapVersion found = MapFile::open(path()).load().map;
+  const core::Rig& read = *found.keyframes[0].view.rig;
+  ASSERT_TRUE(read.body_from_taken_camera);
+  EXPECT_TRUE(is_same(read.body_from_told_camera(), *rig.body_from_taken_camera));
+  EXPECT_FALSE(found.keyframes[1].view.rig->body_from_taken_camera);
+}
+
 TEST_F(MapFiles, AFramePoseThatIsCommittedAgainIsReplaced) {
   write_small_map();
   StoredMap stored;

@@ -135,6 +135,9 @@ TEST_F(ForgedMaps, ARigNeedsACameraThatALensCanHave) {
   odd = rig;
   odd.body_from_camera[0].rotation.coeffs() *= 2.0;
   EXPECT_THAT(complaint_with("rig", 0, bytes_of(odd)), HasSubstr("pose"));
+  odd = rig;
+  odd.body_from_taken_camera.emplace().translation.x() = kNaN;
+  EXPECT_THAT(complaint_with("rig", 0, bytes_of(odd)), HasSubstr("before it was turned"));
 }
 
 TEST_F(ForgedMaps, PosesAndInformationThatAreNoneAreRefused) {

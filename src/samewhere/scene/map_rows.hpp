@@ -31,6 +31,7 @@ void fields(Archive& archive, Value<Archive, core::Imu>& imu) {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, core::Rig>& rig) {
   archive(rig.cameras, rig.body_from_camera, rig.imu);
+  archive.at_end(rig.body_from_taken_camera);
 }
 
 template <class Archive>

@@ -152,6 +152,8 @@ const char* complaint_on(const core::Rig& rig) {
       {std::ranges::all_of(rig.body_from_camera,
                            [](const core::Rigid3& pose) { return is_pose(pose); }),
        "has a camera whose pose is none"},
+      {!rig.body_from_taken_camera || is_pose(*rig.body_from_taken_camera),
+       "has a camera whose pose before it was turned is none"},
       {!rig.imu || is_imu(*rig.imu), "has an inertial unit that none can be"},
   });
 }

@@ -1,16 +1,15 @@
-#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <set>
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <samewhere/core/checksum.hpp>
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/scene/row_file.hpp>
 
@@ -102,39 +101,6 @@ void check_schema(Database& database, const FileKind& kind) {
     refuse(database.path(), fmt::format("is damaged: it lacks {} of its tables", expected.size()));
 }
 
-// All of it, down to the disk. Returns the system's error number, or 0.
-int write_whole(int file, std::string_view bytes) {
-  const ssize_t num_written = ::write(file, bytes.data(), bytes.size());
-  if (num_written < 0) return errno;
-  if (static_cast<std::size_t>(num_written) < bytes.size()) return ENOSPC;
-  return ::fsync(file) == 0 ? 0 : errno;
-}
-
-// Gives the draft its name, which no other file may have: by a link, or where the file system has
-// none, by another name for it.
-int give_name(const std::string& draft, const std::filesystem::path& path) {
-  if (::link(draft.c_str(), path.c_str()) == 0) return 0;
-  const int error = errno;
-  const bool has_no_links = error == EPERM || error == EOPNOTSUPP || error == ENOSYS;
-  if (!has_no_links || std::filesystem::exists(path)) return error;
-  return ::rename(draft.c_str(), path.c_str()) == 0 ? 0 : errno;
-}
-
-// A new file with these bytes, whole or not at all.
-void publish(const std::filesystem::path& path, std::string_view bytes) {
-  const std::string draft = fmt::format("{}.{}.new", path.string(), ::getpid());
-  const int file =
-      ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
-  int error = file < 0 ? errno : write_whole(file, bytes);
-  if (file >= 0) ::close(file);
-  if (error == 0) error = give_name(draft, path);
-  ::unlink(draft.c_str());
-  if (error == 0) return;
-  if (error == EEXIST) refuse(path, "is there already; expected a new file");
-  refuse(path, fmt::format("cannot be opened to be written ({})",
-                           std::generic_category().message(error)));
-}
-
 // A folder of this program alone, removed with its last owner.
 std::shared_ptr<const std::filesystem::path> temporary_folder(const std::filesystem::path& of) {
   std::string name = (std::filesystem::temp_directory_path() / "samewhere-map-XXXXXX").string();
@@ -175,7 +141,8 @@ RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind,
   RowFile draft(std::make_unique<Database>(Database::in_memory(path)), nullptr);
   make_tables(*draft.database_, kind);
   fill(draft);
-  publish(path, draft.database_->file_bytes());
+  if (!core::write_new_file(path, draft.database_->file_bytes()))
+    refuse(path, "is there already; expected a new file");
   try {
     auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
     remove_logs(path);
