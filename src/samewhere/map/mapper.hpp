@@ -44,7 +44,7 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
                           const Config& config);
 
 // Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
-// lost sight of it.
+// lost sight of it; and keyframes of two minutes ago do not see most of what it shows.
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
                       const Config& config);
 
