@@ -9,6 +9,9 @@
 namespace samewhere::pipeline {
 namespace {
 
+// A program that is killed loses no more poses.
+constexpr std::size_t kMaxUnsentFrames = 150;
+
 bool is_weak(const map::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
@@ -68,7 +71,11 @@ void Tracking::feed(const core::Frame& frame) {
     if (tracked && !is_map_fixed_) passing_.see(frame, frames_.back());
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
-  if (map::is_worth_keeping(map_, *tracked, config_.map)) keep(*tracked, frame.images[0]);
+  if (map::is_worth_keeping(map_, *tracked, config_.map)) {
+    keep(*tracked, frame.images[0]);
+  } else if (frames_.size() - num_sent_frames_ >= kMaxUnsentFrames) {
+    mapping_.send(SaveFrames{unsent_frames()});
+  }
 }
 
 features::View Tracking::extract(const core::Frame& frame) {
