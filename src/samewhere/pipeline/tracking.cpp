@@ -10,7 +10,11 @@ namespace samewhere::pipeline {
 namespace {
 
 // A program that is killed loses no more poses.
-constexpr std::size_t kMaxUnsentFrames = 150;
+constexpr std::size_t kMaxUnsentFrames = 60;
+
+// An hour at 30 Hz: so much address space, of which memory is taken as frames come. A vector that
+// grows by copying leaves as much again behind.
+constexpr std::size_t kReservedFrames = 108000;
 
 bool is_weak(const map::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
@@ -33,6 +37,7 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
                      config.optimize, static_cast<std::uint64_t>(config.seed)}),
       place_finder_(config_, lost_tracker_),
       mapping_(mapping) {
+  frames_.reserve(kReservedFrames);
   if (depth_from == DepthFrom::kMotion) {
     starter_.emplace(track::StartSettings{config.track.start, config.track.drift, config.features,
                                           config.optimize,
