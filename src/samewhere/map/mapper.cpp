@@ -28,6 +28,43 @@ int num_proven_landmarks(const scene::MapVersion& map, const scene::Keyframe& ke
       }));
 }
 
+// Nothing: the map has no keyframe of this session yet.
+std::optional<double> first_stamp_s(const scene::MapVersion& map, std::uint16_t session) {
+  std::optional<double> first_s;
+  for (std::size_t i = map.keyframes.size(); i-- > 0;) {
+    if (map.keyframes[i].view.frame.session() != session) break;
+    first_s = map.keyframes[i].view.stamp_s;
+  }
+  return first_s;
+}
+
+// A camera that stays in one room sees it all again within minutes; shorter recordings are as if
+// there were no such rule.
+constexpr double kKnownAfter_s = 120.0;
+constexpr int kMinKnown = 75;  // landmarks: by so many a pose is sure
+
+// Whether the map has known what the view shows for so long that one more keyframe says nothing
+// new: of the landmarks that it shows most, and enough, were seen by two keyframes, one of them
+// before that. Stamps of an earlier session do not compare: it counts as the begin of this one.
+bool is_long_known(const scene::MapVersion& map, const TrackedView& tracked) {
+  const std::uint16_t session = tracked.view.frame.session();
+  const auto session_begin_s = first_stamp_s(map, session);
+  const double latest_s = tracked.view.stamp_s - kKnownAfter_s;
+  if (!session_begin_s || *session_begin_s > latest_s) return false;
+  const auto is_old = [&](const scene::Observation& o) {
+    const features::View& view = map.at(o.keyframe).view;
+    return view.frame.session() != session || view.stamp_s <= latest_s;
+  };
+  const auto num_known = static_cast<int>(
+      std::count_if(tracked.landmarks.begin(), tracked.landmarks.end(), [&](const auto& shown) {
+        const auto& observations = map.at(shown.second).observations;
+        return observations.size() >= 2 &&
+               std::any_of(observations.begin(), observations.end(), is_old);
+      }));
+  const auto num_tracked = static_cast<int>(tracked.landmarks.size());
+  return num_known >= kMinKnown && 2 * num_known > num_tracked;
+}
+
 // A landmark at feature `slot` of a new keyframe; nothing where depth is unknown.
 std::optional<scene::Landmark> new_landmark(const scene::Keyframe& keyframe, int slot,
                                             core::LandmarkId id) {
@@ -124,7 +161,8 @@ bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
   const int num_in_reference = num_proven_landmarks(map, map.at(tracked.pose.reference_keyframe));
   const auto num_tracked = static_cast<int>(tracked.landmarks.size());
   const bool has_lost_sight = num_tracked < min_tracked_ratio * num_in_reference;
-  return is_far || is_turned || has_lost_sight || num_tracked < config.min_tracked;
+  const bool shows_new = is_far || is_turned || has_lost_sight || num_tracked < config.min_tracked;
+  return shows_new && !is_long_known(map, tracked);
 }
 
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,

@@ -48,7 +48,7 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
 double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked);
 
 // Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
-// lost sight of it.
+// lost sight of it; and keyframes of two minutes ago do not see most of what it shows.
 bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
                       const Config& config);
 

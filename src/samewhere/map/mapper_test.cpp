@@ -59,6 +59,63 @@ TEST_F(TestMapper, MovingTurningAndLosingSightEachAddOne) {
   EXPECT_TRUE(is_worth_keeping(map_, blind, config_));
 }
 
+// A map that two keyframes made, and a view of what both show from elsewhere, so much later.
+class ALongStay : public TestMapper {
+ protected:
+  ALongStay() { map_ = apply(map_, add_keyframe(map_, tracked_at({}))); }
+
+  TrackedView tracked_after(double seconds) const {
+    TrackedView tracked = tracked_at({Eigen::Quaterniond::Identity(), {0.8, 0, 0}});
+    tracked.view.stamp_s = first_.stamp_s + seconds;
+    return tracked;
+  }
+
+  // The second keyframe, and so the whole session, is of this one.
+  void put_into_session(std::uint16_t session, double stamp_s) {
+    scene::Keyframe& second = map_.keyframes.edit(1);
+    second.view.frame = core::FrameId(0, session);
+    second.view.stamp_s = stamp_s;
+  }
+};
+
+TEST_F(ALongStay, AddsNoKeyframeOfWhatTheMapHasKnownForMinutes) {
+  EXPECT_TRUE(is_worth_keeping(map_, tracked_after(60.0), config_));
+  EXPECT_FALSE(is_worth_keeping(map_, tracked_after(180.0), config_));
+}
+
+TEST_F(ALongStay, AddsAKeyframeOfWhatOnlyYoungKeyframesHaveSeen) {
+  put_into_session(0, 170.0);
+  scene::MapVersion young = map_;
+  for (std::size_t i = 0; i < young.landmarks.size(); ++i) {
+    auto& seen = young.landmarks.edit(i).observations;
+    std::erase_if(seen, [](const scene::Observation& o) { return o.keyframe.index() == 0; });
+    if (!seen.empty()) seen.push_back(seen.front());
+  }
+  EXPECT_FALSE(is_worth_keeping(map_, tracked_after(180.0), config_));
+  EXPECT_TRUE(is_worth_keeping(young, tracked_after(180.0), config_));
+}
+
+TEST_F(ALongStay, AddsAKeyframeWhereMostOfWhatIsShownIsNewOrLittleIsKnown) {
+  TrackedView tracked = tracked_after(180.0);
+  const auto all = tracked.landmarks;
+  scene::MapVersion once = map_;
+  for (std::size_t i = 0; 5 * i < 3 * all.size(); ++i)
+    once.landmarks.edit(all[i].second.index()).observations.resize(1);
+  EXPECT_TRUE(is_worth_keeping(once, tracked, config_));
+  EXPECT_FALSE(is_worth_keeping(map_, tracked, config_));
+  tracked.landmarks.resize(60);
+  EXPECT_TRUE(is_worth_keeping(map_, tracked, config_));
+}
+
+TEST_F(ALongStay, CountsFromTheBeginOfTheSessionForWhatAnEarlierOneSaw) {
+  put_into_session(1, 1000.0);
+  TrackedView tracked = tracked_after(1060.0);
+  tracked.view.frame = core::FrameId(1, 1);
+  EXPECT_TRUE(is_worth_keeping(map_, tracked, config_));
+  tracked.view.stamp_s = first_.stamp_s + 1180.0;
+  EXPECT_FALSE(is_worth_keeping(map_, tracked, config_));
+}
+
 TEST_F(TestMapper, AViewWithoutDepthIsNeverAKeyframe) {
   TrackedView blind{features::test_view(world_, 1, {}, 0.3, false), {}, {}};
   blind.pose.reference_keyframe = core::KeyframeId(0);

@@ -84,6 +84,11 @@ void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
   reply({.map = map_, .places = answer.places});
 }
 
+void Mapping::take(const SaveFrames& message, const MappingLink::Reply& /*reply*/) {
+  add_frames(message.frames);
+  keep_map();
+}
+
 void Mapping::take(const EndOfInput& message, const MappingLink::Reply& /*reply*/) {
   hear_loops(0);
   if (const auto found = full_bundles_.last(map_)) apply(*found);

@@ -35,6 +35,7 @@ class Mapping {
   void take(const StartMapByMotion& message, const MappingLink::Reply& reply);
   void take(const AddKeyframe& message, const MappingLink::Reply& reply);
   void take(const FindPlace& message, const MappingLink::Reply& reply);
+  void take(const SaveFrames& message, const MappingLink::Reply& reply);
   void take(const EndOfInput& message, const MappingLink::Reply& reply);
 
   // What the map showed so far is no longer part of it.

@@ -41,7 +41,7 @@ struct StartMapByMotion {
 struct AddKeyframe {
   map::TrackedView tracked;
   cv::Mat image;  // empty: it was kept later than its frame; then no loop is looked for
-  std::vector<core::FramePose> frames;  // since the last AddKeyframe, its own the last of them
+  std::vector<core::FramePose> frames;  // since the last that were sent, its own the last of them
 };
 
 // Lost: which places of the whole map may the view show?
@@ -50,12 +50,19 @@ struct FindPlace {
   cv::Mat image;
 };
 
-// Nothing comes any more. Not answered.
-struct EndOfInput {
-  std::vector<core::FramePose> frames;  // since the last AddKeyframe
+// No keyframe came for long, as in a room that the map knows: the frames are to be saved. Not
+// answered.
+struct SaveFrames {
+  std::vector<core::FramePose> frames;  // since the last that were sent
 };
 
-using ToMapping = std::variant<StartMap, StartMapByMotion, AddKeyframe, FindPlace, EndOfInput>;
+// Nothing comes any more. Not answered.
+struct EndOfInput {
+  std::vector<core::FramePose> frames;  // since the last that were sent
+};
+
+using ToMapping =
+    std::variant<StartMap, StartMapByMotion, AddKeyframe, FindPlace, SaveFrames, EndOfInput>;
 
 // Where somebody who is lost may be.
 struct Place {
@@ -121,7 +128,8 @@ struct MapNews {
   std::vector<scene::Thumbnail> thumbnails;
 };
 
-// Called by mapping, in its thread, once per keyframe and at the end, if there is a map.
+// Called by mapping, in its thread, once per keyframe, between keyframes far apart, and at the end,
+// if there is a map.
 using KeepMap = std::function<void(const scene::MapVersion& map, const MapNews& news)>;
 
 }  // namespace samewhere::pipeline

@@ -46,6 +46,31 @@ TEST(Slam, AFrameThatBecameAKeyframeStaysWhereItsKeyframeIsMoved) {
   EXPECT_GT(num_compared, 5);
 }
 
+// A program that is killed during a long stay has lost the poses of seconds, not of all the stay.
+TEST(Slam, FramesOfALongStayAreSavedThoughNoKeyframeComes) {
+  Config config = short_walk();
+  config.threads = false;
+  config.twin.num_frames = 1;
+  std::size_t num_saved = 0;
+  SlamHooks hooks;
+  hooks.keep_map = [&](const scene::MapVersion&, const MapNews& news) {
+    num_saved += news.frames.size();
+  };
+  Slam slam(config, DepthFrom::kSensor, hooks);
+  std::optional<core::Frame> frame = open_source(config)->next();
+  constexpr std::size_t kNumFrames = 70;
+  for (std::size_t i = 0; i < kNumFrames; ++i) {
+    frame->id = core::FrameId(i);
+    frame->stamp_s = static_cast<double>(i) / 30.0;
+    slam.feed(*frame);
+  }
+  EXPECT_GE(num_saved, 60U);
+  EXPECT_LT(num_saved, kNumFrames);
+  slam.finish();
+  EXPECT_EQ(num_saved, kNumFrames);
+  EXPECT_EQ(slam.map().keyframes.size(), 1U);
+}
+
 void expect_same_bits(const Slam& first, const Slam& second) {
   const core::Trajectory a = trajectory_of(first.map(), first.frames());
   const core::Trajectory b = trajectory_of(second.map(), second.frames());

@@ -9,6 +9,13 @@
 namespace samewhere::pipeline {
 namespace {
 
+// A program that is killed loses no more poses.
+constexpr std::size_t kMaxUnsentFrames = 60;
+
+// An hour at 30 Hz: so much address space, of which memory is taken as frames come. A vector that
+// grows by copying leaves as much again behind.
+constexpr std::size_t kReservedFrames = 108000;
+
 bool is_weak(const map::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
@@ -31,6 +38,7 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
       place_finder_(config_, lost_tracker_),
       scale_watch_(config.track.max_scale_change),
       mapping_(mapping) {
+  frames_.reserve(kReservedFrames);
   if (depth_from == DepthFrom::kMotion) {
     starter_.emplace(track::StartSettings{config.track.start, config.track.drift, config.features,
                                           config.optimize,
@@ -71,7 +79,11 @@ void Tracking::feed(const core::Frame& frame) {
     if (tracked && !is_map_fixed_) passing_.see(frame, frames_.back());
   }
   if (!tracked || is_map_fixed_ || under_way_ || is_kept(*tracked)) return;
-  if (map::is_worth_keeping(map_, *tracked, config_.map)) keep(*tracked, frame.images[0]);
+  if (map::is_worth_keeping(map_, *tracked, config_.map)) {
+    keep(*tracked, frame.images[0]);
+  } else if (frames_.size() - num_sent_frames_ >= kMaxUnsentFrames) {
+    mapping_.send(SaveFrames{unsent_frames()});
+  }
 }
 
 features::View Tracking::extract(const core::Frame& frame) {
