@@ -148,19 +148,23 @@ void record_slam(const Slam& slam, const std::vector<std::string>& names,
   drop_unused_thumbnails(record);
 }
 
-// "frames 839 to 853: lengths 1/8.1 of the usual", of at most three.
-std::string told(const std::vector<track::ScaleDoubt>& doubts) {
+// "frames 839 to 853: lengths 1/8.1 of the usual", of at most three; the numbers are of all.
+report::Figure figure_of(const std::vector<track::ScaleDoubt>& doubts) {
   constexpr std::size_t kMost = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(doubts.size(), kMost); ++i) {
-    const auto& [first, last, factor] = doubts[i];
-    text += fmt::format("{}frames {} to {}: lengths {} the usual", i == 0 ? "" : "; ",
-                        first.index(), last.index(),
-                        factor < 1.0 ? fmt::format("1/{:.1f} of", 1.0 / factor)
-                                     : fmt::format("{:.1f} times", factor));
+  report::Figure figure{"scale drift suspected", "", {}};
+  for (std::size_t i = 0; i < doubts.size(); ++i) {
+    const auto first = static_cast<double>(doubts[i].first.index());
+    const auto last = static_cast<double>(doubts[i].last.index());
+    const double factor = doubts[i].factor;
+    figure.numbers.insert(figure.numbers.end(), {first, last, factor});
+    if (i >= kMost) continue;
+    const std::string of_usual = factor < 1.0 ? fmt::format("1/{:.1f} of the usual", 1.0 / factor)
+                                              : fmt::format("{:.1f} times the usual", factor);
+    figure.value +=
+        fmt::format("{}frames {} to {}: lengths {}", i == 0 ? "" : "; ", first, last, of_usual);
   }
-  if (doubts.size() > kMost) text += fmt::format("; {} more", doubts.size() - kMost);
-  return text;
+  if (doubts.size() > kMost) figure.value += fmt::format("; {} more", doubts.size() - kMost);
+  return figure;
 }
 
 // How good it is, as figures, and the truth to be drawn with it.
@@ -181,7 +185,7 @@ void record_figures(const MappedSlam& mapped, const Config& config, const MapPla
         {"scale", "unknown: one camera without depth; lengths of the results are in map units"});
   }
   if (!slam.scale_doubts().empty()) {
-    record.figures.push_back({"scale drift suspected", told(slam.scale_doubts())});
+    record.figures.push_back(figure_of(slam.scale_doubts()));
     spdlog::warn("scale drift suspected: {}", record.figures.back().value);
   }
   if (evaluation.num_measured == 0 && plan.known.empty())
