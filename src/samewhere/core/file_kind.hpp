@@ -19,8 +19,8 @@ inline constexpr std::uint64_t kMegabyte = 1'000'000;
 inline constexpr SizeLimit kSettingsLimit{kMegabyte, "a file of settings"};
 // ours have 5 KB, and JSON takes up to 50 times its size while it is read
 inline constexpr SizeLimit kTimingLimit{kMegabyte, "a timing.json"};
-// a YAML parser takes up to 240 times its size; the largest, nerfstudio's transforms.json, lists all
-// pictures, of which 5,000 have 3 MB
+// a YAML parser takes up to 240 times its size; the largest, nerfstudio's transforms.json, lists
+// all pictures, of which 5,000 have 3 MB
 inline constexpr SizeLimit kCalibrationLimit{3 * kMegabyte, "a camera file"};
 // lists and poses: those of an hour at 200 Hz have 60 MB
 inline constexpr SizeLimit kTextLimit{128 * kMegabyte, "a text file"};

@@ -14,7 +14,7 @@ struct Config {
   int focal_length_keyframes = 30;  // of the first pass that estimates a guessed focal length
   double max_stamp_difference_s = 0.02;
   bool depth = true;
-  bool enlarge = true;  // pictures of less than 480 x 360 pixels, in SLAM
+  bool enlarge = true;    // pictures of less than 480 x 360 pixels, in SLAM
   bool realtime = false;  // of a camera, or of a video that is played, the newest frame
   // No setting but the caller's word: whether a calibration that cannot be read ends the run. Where
   // it does not, the recording's own is warned of and left out.
@@ -49,9 +49,10 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .max = 1.0});
   visit("depth", config.depth,
         {.help = "whether depth images are read; without them a recording is monocular"});
-  visit("enlarge", config.enlarge,
-        {.help = "in SLAM, pictures of fewer than 480 x 360 pixels are enlarged to as many as 640 x "
-                 "480 has: corners lie at whole pixels, and depths from motion are no finer"});
+  visit(
+      "enlarge", config.enlarge,
+      {.help = "in SLAM, pictures of fewer than 480 x 360 pixels are enlarged to as many as 640 x "
+               "480 has: corners lie at whole pixels, and depths from motion are no finer"});
   visit("realtime", config.realtime,
         {.help = "a camera, or a video that is played at its own pace: always the newest frame; "
                  "what comes too fast is dropped, so that two runs need not agree"});

@@ -28,8 +28,7 @@ std::unique_ptr<core::Source> open_source_with_truth(const Config& config) {
   return input::rectified(twin::open_twin(walk, config.twin));
 }
 
-std::unique_ptr<core::Source> for_slam(std::unique_ptr<core::Source> source,
-                                       const Config& config) {
+std::unique_ptr<core::Source> for_slam(std::unique_ptr<core::Source> source, const Config& config) {
   return config.input.enlarge ? input::enlarged(std::move(source)) : std::move(source);
 }
 

@@ -9,6 +9,7 @@
 namespace samewhere::track {
 namespace {
 
+constexpr double kMiddle = 512.0;  // the step of 1
 constexpr double kStep = 0.05;     // of the logarithm
 constexpr double kWindow_s = 2.0;  // whose medians are compared with the usual ones
 constexpr double kFullWindow_s = 1.5;
@@ -21,7 +22,7 @@ constexpr double kMaxFlowChange = 3.0;
 }  // namespace
 
 void LogMedian::add(double value) {
-  const double step = std::floor(std::log(value) / kStep) + kNumSteps / 2;
+  const double step = std::floor(std::log(value) / kStep) + kMiddle;
   const auto slot = static_cast<std::size_t>(std::clamp(step, 0.0, kNumSteps - 1.0));
   ++counts_[slot];
   ++size_;
@@ -33,7 +34,7 @@ double LogMedian::value() const {
   std::size_t slot = 0;
   while (2 * (num_below + static_cast<int>(counts_[slot])) < size_)
     num_below += static_cast<int>(counts_[slot++]);
-  return std::exp((static_cast<double>(slot) + 0.5 - kNumSteps / 2) * kStep);
+  return std::exp((static_cast<double>(slot) + 0.5 - kMiddle) * kStep);
 }
 
 void ScaleWatch::forget() { *this = ScaleWatch(max_change_); }
