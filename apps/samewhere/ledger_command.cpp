@@ -111,7 +111,7 @@ void replay(const LedgerCommand& command) {
   if (!changed.empty()) core::print("\nJudged otherwise:\n{}", lines_of(changed));
 }
 
-void change(const LedgerCommand& command, run::Word word) {
+void change(const LedgerCommand& command, run::Override override_as) {
   constexpr const char* kSections[] = {"optimize.", "map.", "verify."};
   for (const auto& assignment : command.assignments)
     if (std::none_of(std::begin(kSections), std::end(kSections),
@@ -121,7 +121,7 @@ void change(const LedgerCommand& command, run::Word word) {
           ": expected a setting of optimize, map or verify; the others belong to "
           "what the run has seen");
   const auto changed =
-      run::change_run(command.folder, command.candidate, word, command.assignments);
+      run::override_run(command.folder, command.candidate, override_as, command.assignments);
   core::print("{}", lines_of(changed.rows));
   print_figures(
       {{"loops", fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
@@ -165,12 +165,12 @@ void add_replay(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command)
   sub->callback([command] { replay(*command); });
 }
 
-void add_change(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command, run::Word word,
-                const char* name, const char* help) {
+void add_change(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command,
+                run::Override override_as, const char* name, const char* help) {
   CLI::App* sub = ledger.add_subcommand(name, help);
   sub->add_option("N", command->candidate, "its number, as `list` prints it")->required();
   sub->add_option("--set", command->assignments, "SECTION.NAME=VALUE, on top of the run's config");
-  sub->callback([command, word] { change(*command, word); });
+  sub->callback([command, override_as] { change(*command, override_as); });
 }
 
 }  // namespace
@@ -187,9 +187,9 @@ void add_ledger_command(CLI::App& app) {
   add_list(*sub, command);
   add_show(*sub, command);
   add_replay(*sub, command);
-  add_change(*sub, command, run::Word::kReject, "reject",
+  add_change(*sub, command, run::Override::kReject, "reject",
              "Take an accepted loop back with all that it caused: the map is corrected");
-  add_change(*sub, command, run::Word::kForce, "force",
+  add_change(*sub, command, run::Override::kForce, "force",
              "Close a loop that the judge refused, if odometry and the other loops bear it");
   sub->footer(
       "Examples:\n"

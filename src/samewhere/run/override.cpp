@@ -7,6 +7,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/folder_lock.hpp>
+#include <samewhere/core/match_from_query.hpp>
 #include <samewhere/map/full_bundle.hpp>
 #include <samewhere/pipeline/correction.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
@@ -41,7 +42,7 @@ core::LedgerRow refused(core::LedgerRow row, const std::string& reason) {
 
 core::LedgerRow accepted(core::LedgerRow row, const pipeline::Config& config, bool is_by_hand) {
   core::LoopClosure loop{.candidate = row.candidate.id, .evidence = core::evidence_of(row.verdict)};
-  loop.match_from_query = report::match_from_query_of(row.verdict);
+  loop.match_from_query = core::match_from_query_of(row.verdict);
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;
   loop.information = verify::loop_information(config.verify);
   loop.is_by_hand = is_by_hand;
@@ -77,7 +78,7 @@ core::Sim3 measured_pose(const core::LedgerRow& row) {
   if (core::is_loop(row.verdict))
     throw InputError(name_of(row) + " is a loop already; expected one that was refused");
   require_not_lost(row);
-  const auto pose = report::match_from_query_of(row.verdict);
+  const auto pose = core::match_from_query_of(row.verdict);
   if (!pose)
     throw InputError(
         fmt::format("{} has no relative pose ({}); expected one whose geometry was measured",
@@ -128,13 +129,14 @@ double farthest_m(const MapVersion& before, const MapVersion& after) {
   return farthest;
 }
 
-ByHand with_word(const scene::StoredMap& stored, const core::LedgerRow& row, Word word,
-                 const core::Ledger& ledger, const pipeline::Config& config) {
+OverriddenMap overridden(const scene::StoredMap& stored, const core::LedgerRow& row,
+                         Override override_as, const core::Ledger& ledger,
+                         const pipeline::Config& config) {
   const auto& keyframes = stored.map.keyframes;
   if (keyframes.empty() || keyframes.back().view.frame.session() != 0)
     throw InputError("its map holds more than one run; expected that of a single one");
-  return word == Word::kReject ? rejected_by_hand(stored.map, row, config)
-                               : forced_by_hand(stored.map, row, ledger, config);
+  return override_as == Override::kReject ? with_rejected(stored.map, row, config)
+                                          : with_forced(stored.map, row, ledger, config);
 }
 
 // An error of the work names the folder of the run.
@@ -149,8 +151,8 @@ auto naming(const std::filesystem::path& folder, const Work& work) {
 
 }  // namespace
 
-ByHand rejected_by_hand(const MapVersion& map, const core::LedgerRow& row,
-                        const pipeline::Config& config) {
+OverriddenMap with_rejected(const MapVersion& map, const core::LedgerRow& row,
+                            const pipeline::Config& config) {
   const core::CandidateId cause = row.candidate.id;
   require_not_lost(row);
   if (!core::is_loop(row.verdict) && !holds(map, cause))
@@ -162,8 +164,8 @@ ByHand rejected_by_hand(const MapVersion& map, const core::LedgerRow& row,
           {refused(row, "taken back by hand")}};
 }
 
-ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const core::Ledger& ledger,
-                      const pipeline::Config& config) {
+OverriddenMap with_forced(const MapVersion& map, const core::LedgerRow& row,
+                          const core::Ledger& ledger, const pipeline::Config& config) {
   const core::CandidateId cause = row.candidate.id;
   const scene::LoopEdge edge = forced_edge(map, row, config);
   const auto& rival = core::evidence_of(row.verdict).rival;
@@ -176,7 +178,7 @@ ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const c
         fmt::format("{}: {}; a larger optimize.loop_chi2, or another "
                     "optimize.loop_loss, would take it",
                     name_of(row), pipeline::bent_by(*closing.refused, config)));
-  ByHand changed{{}, {accepted(row, config, true)}};
+  OverriddenMap changed{{}, {accepted(row, config, true)}};
   for (const auto& bent : closing.withdrawn)
     changed.rows.push_back(refused(known_of(bent.loop, ledger),
                                    fmt::format("{}, since {} was accepted by hand",
@@ -188,8 +190,8 @@ ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const c
   return changed;
 }
 
-ChangedRun change_run(const std::filesystem::path& folder, std::size_t candidate, Word word,
-                      const std::vector<std::string>& assignments) {
+OverriddenRun override_run(const std::filesystem::path& folder, std::size_t candidate,
+                           Override override_as, const std::vector<std::string>& assignments) {
   const core::FolderLock lock(folder);  // no run may replace what is there meanwhile
   const pipeline::Config config = config_of_run(folder, assignments);
   core::Ledger ledger = ledger_in_step(folder, &lock);
@@ -197,9 +199,10 @@ ChangedRun change_run(const std::filesystem::path& folder, std::size_t candidate
   const std::string frames_csv = core::read_file(folder / "frames.csv");
   scene::MapFile file = scene::MapFile::open(folder / "map.sw", scene::MapAccess::kExtend);
   scene::StoredMap stored = file.load();
-  ByHand changed = naming(folder, [&] { return with_word(stored, row, word, ledger, config); });
-  ChangedRun result{changed.rows, stored.map.loops.size(), changed.map.loops.size(),
-                    farthest_m(stored.map, changed.map)};
+  OverriddenMap changed =
+      naming(folder, [&] { return overridden(stored, row, override_as, ledger, config); });
+  OverriddenRun result{changed.rows, stored.map.loops.size(), changed.map.loops.size(),
+                       farthest_m(stored.map, changed.map)};
   scene::MapExtras news;
   for (const auto& changed_row : changed.rows) {
     news.ledger.push_back(report::ledger_row_json(changed_row));

@@ -8,6 +8,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/core/match_from_query.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/pipeline/slam.hpp>
@@ -27,7 +28,7 @@ using scene::MapVersion;
 using testing::HasSubstr;
 
 // What the judge may have said of candidates for loops in the two rooms.
-class ByHandInRooms : public pipeline::LookAlikeRooms {
+class OverrideInRooms : public pipeline::LookAlikeRooms {
  protected:
   static core::LedgerRow row_of(const scene::LoopEdge& loop, std::size_t id) {
     core::LedgerRow row{{.id = core::CandidateId(id),
@@ -45,13 +46,13 @@ class ByHandInRooms : public pipeline::LookAlikeRooms {
   static core::LedgerRow accepted(core::LedgerRow row) {
     row.verdict = core::LoopClosure{.candidate = row.candidate.id,
                                     .evidence = core::evidence_of(row.verdict),
-                                    .match_from_query = report::match_from_query_of(row.verdict)};
+                                    .match_from_query = core::match_from_query_of(row.verdict)};
     return row;
   }
 
   std::string why_not_forced(const core::LedgerRow& row) const {
     try {
-      forced_by_hand(map_, row, {row}, config_);
+      with_forced(map_, row, {row}, config_);
     } catch (const core::InputError& error) {
       return error.what();
     }
@@ -59,10 +60,10 @@ class ByHandInRooms : public pipeline::LookAlikeRooms {
   }
 };
 
-TEST_F(ByHandInRooms, AForcedLoopCorrectsTheMapAndSaysWhoSpoke) {
+TEST_F(OverrideInRooms, AForcedLoopCorrectsTheMapAndSaysWhoSpoke) {
   map_ = with_next(with_next(map_));
   const core::LedgerRow row = row_of(true_loop(13, 1), 3);
-  const ByHand changed = forced_by_hand(map_, row, {row}, config_);
+  const OverriddenMap changed = with_forced(map_, row, {row}, config_);
   ASSERT_EQ(changed.map.loops.size(), 1U);
   EXPECT_EQ(changed.map.loops[0].cause, core::CandidateId(3));
   EXPECT_LT(rmse_m(changed.map), rmse_m(map_));
@@ -71,10 +72,11 @@ TEST_F(ByHandInRooms, AForcedLoopCorrectsTheMapAndSaysWhoSpoke) {
   EXPECT_THAT(core::reason_of(changed.rows[0].verdict), HasSubstr("by hand"));
 }
 
-TEST_F(ByHandInRooms, ARejectedLoopLeavesTheMapAsIfItHadNeverBeen) {
+TEST_F(OverrideInRooms, ARejectedLoopLeavesTheMapAsIfItHadNeverBeen) {
   const MapVersion believed = closed(map_, lie());
   ASSERT_GT(num_seen_in_both_rooms(believed), 100);
-  const ByHand changed = rejected_by_hand(believed, accepted(row_of(lie(), kLie.index())), config_);
+  const OverriddenMap changed =
+      with_rejected(believed, accepted(row_of(lie(), kLie.index())), config_);
   EXPECT_TRUE(changed.map.loops.empty());
   EXPECT_EQ(survivors(changed.map), survivors(map_));
   ASSERT_EQ(changed.rows.size(), 1U);
@@ -82,7 +84,7 @@ TEST_F(ByHandInRooms, ARejectedLoopLeavesTheMapAsIfItHadNeverBeen) {
   EXPECT_THAT(core::reason_of(changed.rows[0].verdict), HasSubstr("by hand"));
 }
 
-TEST_F(ByHandInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
+TEST_F(OverrideInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
   map_ = with_next(with_next(with_next(map_)));
   map_ = closed(closed(map_, true_loop(13, 1)), true_loop(14, 0));
   ASSERT_EQ(map_.loops.size(), 2U);
@@ -90,7 +92,7 @@ TEST_F(ByHandInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
 }
 
 // Odometry and a true loop against a lie; a loop inside the first room has no part in it.
-TEST_F(ByHandInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
+TEST_F(OverrideInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
   map_ = with_next(with_next(with_next(map_)));
   const scene::LoopEdge inside = loop(3, 0, inverse(truth(0)) * truth(3), core::CandidateId(2000));
   const core::LedgerRow inside_row = accepted(row_of(inside, inside.cause.index()));
@@ -98,7 +100,7 @@ TEST_F(ByHandInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
   const core::LedgerRow row = row_of(true_loop(13, 1), 5);
   const MapVersion believed = closed(closed(map_, inside), lie());
   ASSERT_EQ(believed.loops.size(), 2U);
-  const ByHand changed = forced_by_hand(believed, row, {inside_row, lie_row, row}, config_);
+  const OverriddenMap changed = with_forced(believed, row, {inside_row, lie_row, row}, config_);
   ASSERT_EQ(changed.rows.size(), 2U) << "what it leaves as it was gets none";
   EXPECT_EQ(changed.rows[0].candidate.id, row.candidate.id);
   const core::LedgerRow& withdrawn = changed.rows[1];
@@ -109,7 +111,7 @@ TEST_F(ByHandInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
   EXPECT_EQ(changed.map.loops.size(), 2U);
 }
 
-TEST_F(ByHandInRooms, WhatCannotBeForcedSaysWhy) {
+TEST_F(OverrideInRooms, WhatCannotBeForcedSaysWhy) {
   const core::LedgerRow row = row_of(lie(), 5);
   EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop already"));
   core::LedgerRow lost = row;
@@ -121,15 +123,15 @@ TEST_F(ByHandInRooms, WhatCannotBeForcedSaysWhy) {
   core::LedgerRow elsewhere = row;
   elsewhere.candidate.query = core::FrameId(999);
   EXPECT_THAT(why_not_forced(elsewhere), HasSubstr("frame 999 is no keyframe"));
-  EXPECT_THROW(rejected_by_hand(map_, row, config_), core::InputError);
+  EXPECT_THROW(with_rejected(map_, row, config_), core::InputError);
   lost.verdict = accepted(row).verdict;
-  EXPECT_THROW(rejected_by_hand(map_, lost, config_), core::InputError) << "no edge to take back";
+  EXPECT_THROW(with_rejected(map_, lost, config_), core::InputError) << "no edge to take back";
 }
 
 // The folder of a finished run through the rooms, lost between the two.
-class ByHandInAFolder : public ByHandInRooms {
+class OverrideInAFolder : public OverrideInRooms {
  protected:
-  ByHandInAFolder() {
+  OverrideInAFolder() {
     map_ = with_next(with_next(map_));
     scene::MapFile::create(map_path(), {}).commit(map_, {.frames = frames()});
     folder_.write("config.yaml", "seed: 3\n");
@@ -176,9 +178,9 @@ class ByHandInAFolder : public ByHandInRooms {
     return scene::MapFile::open(map_path()).load().map.loops.size();
   }
 
-  std::string why_not_changed(std::size_t candidate, Word word) const {
+  std::string why_not_changed(std::size_t candidate, Override override_as) const {
     try {
-      change_run(folder_.root(), candidate, word, {});
+      override_run(folder_.root(), candidate, override_as, {});
     } catch (const core::InputError& error) {
       return error.what();
     }
@@ -188,7 +190,7 @@ class ByHandInAFolder : public ByHandInRooms {
   input::TestFolder folder_;
 };
 
-TEST_F(ByHandInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
+TEST_F(OverrideInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
   const core::LedgerRow row = ledger_of_run(folder_.root())[0];
   const auto why_not_shown = [&] {
     try {
@@ -216,8 +218,8 @@ TEST_F(ByHandInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
   EXPECT_THROW(pair_of_run(folder_.root(), of_no_keyframe), core::InputError);
 }
 
-TEST_F(ByHandInAFolder, ForcingAndRejectingAreWrittenDown) {
-  const ChangedRun forced = change_run(folder_.root(), 0, Word::kForce, {});
+TEST_F(OverrideInAFolder, ForcingAndRejectingAreWrittenDown) {
+  const OverriddenRun forced = override_run(folder_.root(), 0, Override::kForce, {});
   EXPECT_EQ(forced.num_loops_before, 0U);
   EXPECT_EQ(forced.num_loops, 1U);
   EXPECT_GT(forced.farthest_m, 0.0);
@@ -225,22 +227,22 @@ TEST_F(ByHandInAFolder, ForcingAndRejectingAreWrittenDown) {
   EXPECT_EQ(num_stored_loops(), 1U);
   expect_files_of_map();
 
-  const ChangedRun rejected = change_run(folder_.root(), 0, Word::kReject, {});
+  const OverriddenRun rejected = override_run(folder_.root(), 0, Override::kReject, {});
   EXPECT_EQ(rejected.num_loops, 0U);
   EXPECT_EQ(num_stored_loops(), 0U);
   const core::Verdict verdict = ledger_of_run(folder_.root())[0].verdict;
   EXPECT_THAT(core::reason_of(verdict), HasSubstr("by hand"));
-  EXPECT_TRUE(report::match_from_query_of(verdict)) << "it may be forced once more";
+  EXPECT_TRUE(core::match_from_query_of(verdict)) << "it may be forced once more";
   expect_files_of_map();
 }
 
-TEST_F(ByHandInAFolder, NothingIsChangedWhileAnotherProgramWritesIntoTheFolder) {
+TEST_F(OverrideInAFolder, NothingIsChangedWhileAnotherProgramWritesIntoTheFolder) {
   {
     const core::FolderLock of_another(folder_.root());
-    EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("another program is writing"));
+    EXPECT_THAT(why_not_changed(0, Override::kForce), HasSubstr("another program is writing"));
   }
   const std::string old_ledger = text_of("loops.json");
-  change_run(folder_.root(), 0, Word::kForce, {});
+  override_run(folder_.root(), 0, Override::kForce, {});
   // cut short: the lists are older than the map
   folder_.write("loops.json", old_ledger);
   folder_.write("loops.json.partial-17-0", "{");
@@ -255,12 +257,12 @@ TEST_F(ByHandInAFolder, NothingIsChangedWhileAnotherProgramWritesIntoTheFolder) 
 }
 
 // Killed after the map was committed and before, or while, the lists were written.
-TEST_F(ByHandInAFolder, ListsThatAreOlderThanTheMapAreWrittenAnew) {
+TEST_F(OverrideInAFolder, ListsThatAreOlderThanTheMapAreWrittenAnew) {
   constexpr const char* kLists[] = {"trajectory.tum", "odometry.tum", "frames.csv", "map.ply",
                                     "loops.json"};
   const std::string old_ledger = text_of("loops.json");
   const std::string old_frames = text_of("frames.csv");
-  change_run(folder_.root(), 0, Word::kForce, {});
+  override_run(folder_.root(), 0, Override::kForce, {});
   std::map<std::string, std::string> written;
   for (const char* name : kLists) written[name] = text_of(name);
   for (const std::size_t num_written : {0U, 1U, 4U}) {
@@ -274,12 +276,12 @@ TEST_F(ByHandInAFolder, ListsThatAreOlderThanTheMapAreWrittenAnew) {
   }
   // and where it was cut short, it may be changed once more
   folder_.write("loops.json", old_ledger);
-  EXPECT_EQ(change_run(folder_.root(), 0, Word::kReject, {}).num_loops, 0U);
+  EXPECT_EQ(override_run(folder_.root(), 0, Override::kReject, {}).num_loops, 0U);
   expect_files_of_map();
 }
 
 // A full disk ends the saving of a map, not the run: then the lists know more.
-TEST_F(ByHandInAFolder, ListsThatKnowMoreThanTheMapStayAsTheyAre) {
+TEST_F(OverrideInAFolder, ListsThatKnowMoreThanTheMapStayAsTheyAre) {
   core::LedgerRow later = row_of(true_loop(13, 1), 1);
   later.candidate.query = core::FrameId(12);
   const core::Ledger ledger = {accepted(row_of(true_loop(13, 1), 0)), accepted(later)};
@@ -290,7 +292,7 @@ TEST_F(ByHandInAFolder, ListsThatKnowMoreThanTheMapStayAsTheyAre) {
 }
 
 // What the map says of its ledger may come from anywhere.
-TEST_F(ByHandInAFolder, AForgedLedgerInTheMapChangesNoLists) {
+TEST_F(OverrideInAFolder, AForgedLedgerInTheMapChangesNoLists) {
   {
     scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
     file.load();
@@ -302,18 +304,18 @@ TEST_F(ByHandInAFolder, AForgedLedgerInTheMapChangesNoLists) {
   EXPECT_TRUE(text_of("loops.json") == before);
 }
 
-TEST_F(ByHandInAFolder, WhatCannotBeDoneChangesNothing) {
+TEST_F(OverrideInAFolder, WhatCannotBeDoneChangesNothing) {
   const std::string ledger = text_of("loops.json");
-  EXPECT_THAT(why_not_changed(1, Word::kForce), HasSubstr("expected 0 to 0"));
-  EXPECT_THAT(why_not_changed(0, Word::kReject), HasSubstr(folder_.root().string()));
+  EXPECT_THAT(why_not_changed(1, Override::kForce), HasSubstr("expected 0 to 0"));
+  EXPECT_THAT(why_not_changed(0, Override::kReject), HasSubstr(folder_.root().string()));
   folder_.write("frames.csv", report::frames_csv({}));
-  EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("0 measured poses; expected 14"));
+  EXPECT_THAT(why_not_changed(0, Override::kForce), HasSubstr("0 measured poses; expected 14"));
   EXPECT_TRUE(text_of("loops.json") == ledger);
   EXPECT_EQ(num_stored_loops(), 0U);
   EXPECT_FALSE(std::filesystem::exists(folder_.root() / "trajectory.tum"));
 }
 
-TEST_F(ByHandInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
+TEST_F(OverrideInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
   {
     scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
     const MapVersion map = file.load().map;
@@ -322,7 +324,7 @@ TEST_F(ByHandInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
     edit.keyframes[0].view.frame = core::FrameId(0, 1);
     file.commit(apply(map, edit), {});
   }
-  EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("more than one run"));
+  EXPECT_THAT(why_not_changed(0, Override::kForce), HasSubstr("more than one run"));
 }
 
 }  // namespace

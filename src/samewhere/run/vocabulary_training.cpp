@@ -33,7 +33,7 @@ std::vector<cv::Mat> descriptors_of(const pipeline::Config& config, int step) {
   return pictures;
 }
 
-std::string card_of(const WordTraining& training, const TrainedWords& trained,
+std::string card_of(const VocabularyTraining& training, const TrainedVocabulary& trained,
                     const Json& sources) {
   const Json card = {
       {"vocabulary", training.out.filename().string()},
@@ -49,7 +49,8 @@ std::string card_of(const WordTraining& training, const TrainedWords& trained,
 
 }  // namespace
 
-TrainedWords train_words(const WordTraining& training, const pipeline::Config& config) {
+TrainedVocabulary train_vocabulary(const VocabularyTraining& training,
+                                   const pipeline::Config& config) {
   std::vector<cv::Mat> pictures;
   Json sources = Json::array();
   for (const std::string& name : training.sources) {
@@ -59,7 +60,7 @@ TrainedWords train_words(const WordTraining& training, const pipeline::Config& c
     sources.push_back({{"source", name}, {"num_pictures", found.size()}});
     pictures.insert(pictures.end(), found.begin(), found.end());
   }
-  TrainedWords trained{.num_pictures = static_cast<int>(pictures.size())};
+  TrainedVocabulary trained{.num_pictures = static_cast<int>(pictures.size())};
   for (const cv::Mat& descriptors : pictures) trained.num_features += descriptors.rows;
   if (trained.num_features == 0)
     throw core::InputError(training.sources.front() + ": no picture has a feature to learn from");

@@ -9,7 +9,7 @@
 
 namespace samewhere::run {
 
-struct WordTraining {
+struct VocabularyTraining {
   std::vector<std::string> sources;  // recordings, lists or folders of images, rendered walks
   int step = 1;                      // one frame of so many is looked at
   features::GrowSettings grow;
@@ -17,7 +17,7 @@ struct WordTraining {
   std::string command;  // for the card
 };
 
-struct TrainedWords {
+struct TrainedVocabulary {
   int num_pictures = 0;
   int num_features = 0;
   int num_words = 0;
@@ -27,6 +27,7 @@ struct TrainedWords {
 // (JSON: command, sources, numbers, checksum of the file). Progress on stderr. Throws InputError if
 // a source or one of its pictures cannot be read, no picture has a feature, or the files cannot be
 // written; Interrupted after Ctrl-C; then nothing is written.
-TrainedWords train_words(const WordTraining& training, const pipeline::Config& config);
+TrainedVocabulary train_vocabulary(const VocabularyTraining& training,
+                                   const pipeline::Config& config);
 
 }  // namespace samewhere::run
