@@ -150,7 +150,6 @@ struct Ambiguous {
 
 using Verdict = std::variant<LoopClosure, Rejection, Ambiguous>;
 
-CandidateId candidate_of(const Verdict& verdict);
 const Evidence& evidence_of(const Verdict& verdict);
 bool is_loop(const Verdict& verdict);
 // "LOOP", "NOT" or "AMBIGUOUS": the words of loops.json.
