@@ -1,12 +1,10 @@
-// samewhere-train: trains the network that describes a view; `samewhere-train pairs` the one that
-// judges pairs of views. `samewhere train` starts it.
+// samewhere-train: trains the network that describes a view. `samewhere train` starts it.
 
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +12,6 @@
 #include <spdlog/spdlog.h>
 
 #include "options.hpp"
-#include "pairs_command.hpp"
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/progress.hpp>
@@ -32,8 +29,7 @@ constexpr const char* kExamples =
     "  samewhere train --images gallery.txt --out small.onnx --code-size 264 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
     "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
-    "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).\n"
-    "Another network, which judges whether two views show one place: samewhere train pairs --help";
+    "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
 
 // What would be found out only after all images are read, or after hours.
 void check(const Job& job) {
@@ -137,8 +133,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace samewhere;
-  const bool is_of_pairs = argc > 1 && std::string_view(argv[1]) == "pairs";
-  return core::run_program("samewhere", [&] {
-    return is_of_pairs ? train::train_pairs(argc, argv) : train::run(argc, argv);
-  });
+  return core::run_program("samewhere", [&] { return train::run(argc, argv); });
 }

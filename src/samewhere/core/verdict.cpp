@@ -35,10 +35,6 @@ std::string_view name_of(Refusal refusal) {
   throw ContractError("promise broken: every Refusal has a name");
 }
 
-CandidateId candidate_of(const Verdict& verdict) {
-  return std::visit([](const auto& v) { return v.candidate; }, verdict);
-}
-
 const Evidence& evidence_of(const Verdict& verdict) {
   return std::visit([](const auto& v) -> const Evidence& { return v.evidence; }, verdict);
 }

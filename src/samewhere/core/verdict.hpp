@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include <samewhere/core/ids.hpp>
 #include <samewhere/core/rigid3.hpp>
@@ -120,12 +119,6 @@ inline constexpr Refusal kAllRefusals[] = {
 
 std::string_view name_of(Refusal refusal);
 
-// A feature of the query and the feature of the match that shows the same point.
-struct FeaturePair {
-  int query_feature = 0;
-  int match_feature = 0;
-};
-
 // The two views show the same place.
 struct LoopClosure {
   CandidateId candidate;
@@ -134,8 +127,7 @@ struct LoopClosure {
       match_from_query;  // none: counted as a loop, but adds no edge (profile paper without a pose)
   bool scale_is_free = false;  // monocular: the scale of match_from_query was estimated
   Matrix6d information = Matrix6d::Identity();  // of match_from_query, order [m; rad]
-  std::vector<FeaturePair> pairs;
-  bool is_by_hand = false;  // a person said so, whatever the judge
+  bool is_by_hand = false;                      // a person said so, whatever the judge
   // Valid: that loop and those after it put the camera elsewhere, and odometry speaks against them.
   CandidateId overruled = {};
 };
@@ -158,7 +150,6 @@ struct Ambiguous {
 
 using Verdict = std::variant<LoopClosure, Rejection, Ambiguous>;
 
-CandidateId candidate_of(const Verdict& verdict);
 const Evidence& evidence_of(const Verdict& verdict);
 bool is_loop(const Verdict& verdict);
 // "LOOP", "NOT" or "AMBIGUOUS": the words of loops.json.

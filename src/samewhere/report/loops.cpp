@@ -136,16 +136,6 @@ std::string ledger_row_json(const core::LedgerRow& row) {
   return dumped(entry, -1);
 }
 
-std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger) {
-  std::vector<ScoredPair> pairs;
-  for (const core::LedgerRow* row : final_rows(ledger))
-    if (core::is_loop(row->verdict))
-      pairs.push_back({row->candidate.query, row->candidate.match, row->candidate.similarity});
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const ScoredPair& a, const ScoredPair& b) { return a.query < b.query; });
-  return pairs;
-}
-
 std::string pairs_text(const std::vector<ScoredPair>& pairs) {
   std::string text;
   for (const ScoredPair& pair : pairs) {

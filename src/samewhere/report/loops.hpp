@@ -34,9 +34,6 @@ struct ScoredPair {
   double score = 0.0;  // finite
 };
 
-// The loops of a ledger, scored by similarity, in the order of the queries.
-std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger);
-
 // Lines "query match score"; the score has all digits it needs to be read back as it was.
 std::string pairs_text(const std::vector<ScoredPair>& pairs);
 

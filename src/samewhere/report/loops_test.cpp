@@ -169,13 +169,5 @@ TEST(PairsText, ReadsBackToTheSameBits) {
                core::ContractError);
 }
 
-TEST(AcceptedPairs, AreTheLoopsInTheOrderOfTheQueries) {
-  const core::Ledger ledger{loop_row(candidate(0, 90, 3, 0.9), 50),
-                            ambiguous_row(candidate(1, 95, 3, 0.8)),
-                            loop_row(candidate(2, 80, 4, 0.7), 50)};
-  const std::vector<ScoredPair> pairs = accepted_pairs(ledger);
-  EXPECT_EQ(pairs_text(pairs), "80 4 0.7\n90 3 0.9\n");
-}
-
 }  // namespace
 }  // namespace samewhere::report

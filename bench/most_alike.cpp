@@ -1,10 +1,10 @@
+#include "most_alike.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include <samewhere/pairs/most_alike.hpp>
-
-namespace samewhere::pairs {
+namespace samewhere::bench {
 
 float dot(const std::vector<float>& a, const std::vector<float>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0F);
@@ -28,4 +28,4 @@ std::vector<int> most_alike(const std::vector<std::vector<float>>& vectors, int 
   return best;
 }
 
-}  // namespace samewhere::pairs
+}  // namespace samewhere::bench

@@ -1,9 +1,9 @@
+#include "most_alike.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <samewhere/pairs/most_alike.hpp>
-
-namespace samewhere::pairs {
+namespace samewhere::bench {
 namespace {
 
 TEST(MostAlike, TheMostAlikeComeFirst) {
@@ -13,4 +13,4 @@ TEST(MostAlike, TheMostAlikeComeFirst) {
 }
 
 }  // namespace
-}  // namespace samewhere::pairs
+}  // namespace samewhere::bench

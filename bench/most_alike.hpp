@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace samewhere::pairs {
+namespace samewhere::bench {
 
 // Of two vectors of equal length.
 float dot(const std::vector<float>& a, const std::vector<float>& b);
@@ -11,4 +11,4 @@ float dot(const std::vector<float>& a, const std::vector<float>& b);
 std::vector<int> most_alike(const std::vector<std::vector<float>>& vectors, int query,
                             const std::vector<int>& offered, int count);
 
-}  // namespace samewhere::pairs
+}  // namespace samewhere::bench

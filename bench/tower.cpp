@@ -1,17 +1,14 @@
-#include <algorithm>
+#include "tower.hpp"
+
 #include <map>
-#include <sstream>
-#include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file_kind.hpp>
 #include <samewhere/core/text_file.hpp>
-#include <samewhere/pairs/tower.hpp>
 
-namespace samewhere::pairs {
+namespace samewhere::bench {
 namespace {
 
 // Image name -> whether the data set calls it gallery.
@@ -31,37 +28,13 @@ std::map<std::string, bool> read_splits(const std::filesystem::path& csv) {
   return is_gallery;
 }
 
-constexpr std::string_view kFloors = "?floors=";
-
-void require_floors(const TowerSource& source, const std::vector<TowerImage>& images) {
-  for (const std::string& floor : source.floors) {
-    if (std::ranges::find(images, floor, &TowerImage::floor) != images.end()) continue;
-    throw core::InputError(fmt::format("{}: no image of floor '{}', expected a floor of walk.txt",
-                                       source.folder.string(), floor));
-  }
-}
-
 }  // namespace
 
-TowerSource tower_source(const std::string& source) {
-  const std::size_t end = source.find(kFloors);
-  if (end == std::string::npos) return {.folder = source, .floors = {}};
-  TowerSource tower{.folder = source.substr(0, end), .floors = {}};
-  std::istringstream floors(source.substr(end + kFloors.size()));
-  for (std::string floor; std::getline(floors, floor, ',');) tower.floors.insert(floor);
-  if (tower.floors.empty())
-    throw core::InputError(
-        fmt::format("{}: no floor, expected FOLDER?floors=NAME,NAME...", source));
-  return tower;
-}
-
-bool is_tower(const std::string& source) {
-  const std::filesystem::path folder = tower_source(source).folder;
+bool is_tower(const std::filesystem::path& folder) {
   return core::is_there(folder / "dataset.csv") && core::is_there(folder / "walk.txt");
 }
 
-std::vector<TowerImage> read_tower(const TowerSource& source) {
-  const std::filesystem::path& folder = source.folder;
+std::vector<TowerImage> read_tower(const std::filesystem::path& folder) {
   const std::map<std::string, bool> is_gallery = read_splits(folder / "dataset.csv");
   std::vector<TowerImage> images;
   for (const core::TextLine& line : core::read_text_lines(folder / "walk.txt")) {
@@ -72,8 +45,7 @@ std::vector<TowerImage> read_tower(const TowerSource& source) {
     }
     images.push_back({line.words[1], line.words[2], split->second});
   }
-  require_floors(source, images);
   return images;
 }
 
-}  // namespace samewhere::pairs
+}  // namespace samewhere::bench
