@@ -37,14 +37,14 @@ struct Config {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("source", config.source,
-        {.help = "what was run; written by the program, read by `samewhere eval`"});
-  visit("seed", config.seed, {.help = "of everything random", .min = 0});
+        {.help = "recording that was run; written by the program, read by `samewhere eval`"});
+  visit("seed", config.seed, {.help = "seed of all random numbers", .min = 0});
   visit("threads", config.threads,
-        {.help = "`run`: tracking, mapping and loop closing in a thread each; `loops`: describing, "
-                 "searching and judging; the results are the same"});
+        {.help = "`run`: tracking, mapping and loop closing in a thread each; `loops`: "
+                 "description, retrieval and verification; the results are identical"});
   visit("close_loops", config.close_loops,
-        {.help = "`run`: places seen before are looked for and correct the map; false: nothing is "
-                 "corrected, but who is lost is still looked for"});
+        {.help = "`run`: accepted loops correct the map; false: loop closing is off, "
+                 "relocalization is not"});
   visit("input", config.input, {.help = "Reading recordings"});
   visit("twin", config.twin, {.help = "The twin building"});
   visit("features", config.features, {.help = "Points of interest and their matches"});

@@ -15,21 +15,19 @@ struct DriftConfig {
 
 inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
   visit("factor", config.factor,
-        {.help = "errors of odometry are this many times what the residuals of a frame leave open",
+        {.help = "with depth: standard deviation of odometry over that of the residuals",
          .min = 0.01,
          .max = 100.0});
   visit("factor_without_depth", config.factor_without_depth,
-        {.help = "the same of a camera without depth, whose local map is known less well",
-         .min = 0.01,
-         .max = 100.0});
+        {.help = "without depth: the same", .min = 0.01, .max = 100.0});
   visit("per_metre", config.per_metre,
-        {.help = "error per metre moved, of a camera that is calibrated as well as most, metres",
-         .min = 0.0,
-         .max = 1.0});
+        {.help = "standard deviation per metre of translation, metres", .min = 0.0, .max = 1.0});
   visit("per_radian", config.per_radian,
-        {.help = "the same per radian turned, radians", .min = 0.0, .max = 1.0});
+        {.help = "standard deviation per radian of rotation, radians", .min = 0.0, .max = 1.0});
   visit("weak_factor", config.weak_factor,
-        {.help = "all errors times this while tracking is weak", .min = 1.0, .max = 100.0});
+        {.help = "factor on all standard deviations while the pose is weak",
+         .min = 1.0,
+         .max = 100.0});
 }
 
 // What relates two views (two_view_model.hpp).
@@ -54,50 +52,43 @@ struct StartConfig {
 // When a start is given up.
 inline void visit_giving_up(StartConfig& config, core::FieldVisitor& visit) {
   visit("max_waiting_frames", config.max_waiting_frames,
-        {.help = "frames after which a first view without a start gives up its place",
-         .min = 1,
-         .max = 100000});
+        {.help = "frames after which the first view is replaced", .min = 1, .max = 100000});
   visit("provisional_keyframes", config.provisional_keyframes,
-        {.help = "a map that is lost before it has so many keyframes is given up for a new start",
+        {.help = "a map with fewer keyframes is re-initialized after tracking loss",
          .min = 0,
          .max = 10000});
   visit("provisional_s", config.provisional_s,
-        {.help = "with depth also one that was followed for less, seconds, and is lost for longer: "
-                 "in a crowd every frame is a keyframe",
+        {.help = "with depth: a map tracked for less is re-initialized if it is lost for longer, s",
          .min = 0.0,
          .max = 3600.0});
 }
 
 inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
   visit("model", config.model,
-        {.help = "of the two views, from which R and t are taken: the better of homography and "
-                 "essential matrix, or the fundamental matrix, eq. (18)-(22)",
+        {.help = "two-view model: the better of homography and essential matrix, or the "
+                 "fundamental matrix, eq. (18)-(22)",
          .choices = {"homography_or_essential", "fundamental"}});
-  visit(
-      "min_matches", config.min_matches,
-      {.help = "fewer matches of the two views are no start, and the later view becomes the first",
-       .min = 8,
-       .max = 10000});
+  visit("min_matches", config.min_matches,
+        {.help = "least matches of the two views; with fewer the later view becomes the first",
+         .min = 8,
+         .max = 10000});
   visit("min_points", config.min_points,
-        {.help = "fewer points in front of both views are no start", .min = 8, .max = 10000});
+        {.help = "least triangulated points in front of both cameras", .min = 8, .max = 10000});
   visit("max_error_px", config.max_error_px,
-        {.help = "error of a match that agrees with a motion", .min = 0.1, .max = 50.0});
+        {.help = "largest reprojection error of an inlier, pixels", .min = 0.1, .max = 50.0});
   visit("ransac_iterations", config.ransac_iterations,
-        {.help = "RANSAC samples of either model at most", .min = 1, .max = 100000});
+        {.help = "largest number of RANSAC samples per model", .min = 1, .max = 100000});
   visit("min_homography_ratio", config.min_homography_ratio,
-        {.help =
-             "share of the homography in the scores of both models from which it is chosen, or the "
-             "fundamental matrix refused",
+        {.help = "least share of the homography in the two scores for which it is chosen; with "
+                 "`fundamental`: for which the start is rejected (ORB-SLAM, TRO 2015)",
          .min = 0.0,
          .max = 1.0});
   visit("min_parallax_rad", config.min_parallax_rad,
-        {.help = "median parallax of a start, radians; less is a rotation",
-         .min = 0.001,
-         .max = 1.0});
+        {.help = "least median parallax, radians", .min = 0.001, .max = 1.0});
   visit("min_point_parallax_rad", config.min_point_parallax_rad,
-        {.help = "matches with less parallax become no points, radians", .min = 0.0, .max = 1.0});
+        {.help = "least parallax of a triangulated point, radians", .min = 0.0, .max = 1.0});
   visit("max_rival_ratio", config.max_rival_ratio,
-        {.help = "a second motion that explains this share of the best one's matches is ambiguity",
+        {.help = "ambiguous if a second motion has more than this share of the best one's inliers",
          .min = 0.1,
          .max = 1.0});
   visit_giving_up(config, visit);
@@ -113,29 +104,26 @@ struct LostConfig {
 };
 
 inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
-  visit("max_speed_m_s", config.max_speed_m_s,
-        {.help = "who is lost is found nowhere beyond what this speed reaches since the last pose; "
-                 "without depth there are no metres, and no limit",
-         .min = 0.01,
-         .max = 1000.0});
+  visit(
+      "max_speed_m_s", config.max_speed_m_s,
+      {.help =
+           "with depth: poses beyond the reach of this speed since the last pose are rejected, m/s",
+       .min = 0.01,
+       .max = 1000.0});
   visit("max_ratio_without_depth", config.max_ratio_without_depth,
-        {.help = "features.max_ratio of who is lost where depths come from motion: few landmarks "
-                 "hold a pose, and the pose sorts out what matches wrongly",
-         .min = 0.1,
-         .max = 1.0});
+        {.help = "without depth: features.max_ratio in relocalization", .min = 0.1, .max = 1.0});
   visit("max_rival_ratio", config.max_rival_ratio,
-        {.help = "nobody is found while another place of the map has more than this share of the "
-                 "best one's inliers, or of its inliers for each landmark in sight, in what the "
-                 "map shows at both",
+        {.help = "ambiguous if a competing place has more than this share of the best one's "
+                 "inliers, or of its inliers per visible landmark",
          .min = 0.0,
          .max = 1.0});
   visit("views_to_resume", config.views_to_resume,
-        {.help = "so many views must speak for a place; after less than a second one is enough",
+        {.help = "views that must support the place; one is enough within 1 s of tracking loss",
          .min = 1,
          .max = 10});
   visit("frames_to_restart", config.frames_to_restart,
-        {.help = "with depth, lost for so many frames in a map of fewer than "
-                 "start.provisional_keyframes: it is given up for a new start",
+        {.help = "with depth: lost frames after which a map with fewer than provisional_keyframes "
+                 "is re-initialized",
          .min = 1,
          .max = 1000000});
 }
@@ -158,40 +146,40 @@ struct Config {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("near_radius_px", config.near_radius_px,
-        {.help = "search radius around a landmark's predicted pixel", .min = 1.0, .max = 500.0});
+        {.help = "search radius around a landmark's predicted pixel, pixels",
+         .min = 1.0,
+         .max = 500.0});
   visit("far_radius_px", config.far_radius_px,
-        {.help = "the same when that finds no sure pose", .min = 1.0, .max = 1000.0});
+        {.help = "search radius after too few inliers, pixels", .min = 1.0, .max = 1000.0});
   visit("refine_radius_px", config.refine_radius_px,
-        {.help = "the same once the pose is known, to collect what was missed",
-         .min = 0.5,
-         .max = 100.0});
+        {.help = "search radius with the estimated pose, pixels", .min = 0.5, .max = 100.0});
   visit("max_error_px", config.max_error_px,
-        {.help = "reprojection error of a RANSAC inlier", .min = 0.1, .max = 50.0});
+        {.help = "largest reprojection error of a RANSAC inlier, pixels", .min = 0.1, .max = 50.0});
   visit("ransac_iterations", config.ransac_iterations,
-        {.help = "RANSAC samples at most", .min = 1, .max = 100000});
+        {.help = "largest number of RANSAC samples", .min = 1, .max = 100000});
   visit("min_inliers", config.min_inliers,
-        {.help = "fewer inliers are no pose", .min = 6, .max = 1000});
+        {.help = "least inliers of a pose", .min = 6, .max = 1000});
   visit("weak_inliers", config.weak_inliers,
-        {.help = "fewer inliers are a weak pose", .min = 6, .max = 1000});
+        {.help = "fewer inliers: the pose is weak", .min = 6, .max = 1000});
   visit("sure_inliers", config.sure_inliers,
-        {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
+        {.help = "fewer inliers after the first search: the search radius is enlarged",
          .min = 6,
          .max = 10000});
   visit("min_share_by_depth", config.min_share_by_depth,
-        {.help = "where features hold a weak pose or none, this share of the surfaces that both "
-                 "depth pictures show must lie on each other, and holds it; above 1: never",
+        {.help = "with depth and few features: least share of common surface points that must "
+                 "agree for a pose by depth alignment; above 1: off",
          .min = 0.0,
          .max = 1.1});
   visit("max_scale_change", config.max_scale_change,
-        {.help = "without depth: camera and landmarks in sight so many times slower and nearer (or "
-                 "faster and farther) than usual, both at once and lasting: the scale is suspected "
-                 "to have changed, and poses are weak; up to 1: nothing is suspected",
+        {.help = "without depth: change of speed and of landmark depth, both by this factor, from "
+                 "which scale drift is suspected and poses are weak; up to 1: off",
          .min = 0.0,
          .max = 1000.0});
-  visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});
-  visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
+  visit("lost", config.lost, {.help = "Relocalization"});
+  visit("start", config.start,
+        {.help = "Initialization of one camera without depth, from two views"});
   visit("drift", config.drift,
-        {.help = "Error model of the odometry, from which its information is made"});
+        {.help = "Drift model of the odometry, from which its information is derived"});
 }
 
 }  // namespace samewhere::track
