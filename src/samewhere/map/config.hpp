@@ -28,13 +28,27 @@ struct Config {
   int full_bundle_after_keyframes = 5;
   int full_bundle_pace = 4000;
   int cull_after_keyframes = 3;
-  int forget_after_keyframes = 10;
+  int cull_unmatched_after_keyframes = 10;
   double min_found_ratio = 0.25;
   double redundant_ratio = 0.7;
   int visible_after_frames = 2;
   int loop_lag_keyframes = 1;
   int keyframes_in_memory = 200;
+  double known_after_s = 120.0;
+  int min_known_landmarks = 75;
 };
+
+// Keyframes of places that the map has known for long.
+inline void visit_known_fields(Config& config, core::FieldVisitor& visit) {
+  visit(
+      "known_after_s", config.known_after_s,
+      {.help = "a view of which most landmarks have been in the map for so long is no keyframe, s",
+       .min = 0.0,
+       .max = 1e9,
+       .is_expert = true});
+  visit("min_known_landmarks", config.min_known_landmarks,
+        {.help = "least number of such landmarks", .min = 1, .max = 100000, .is_expert = true});
+}
 
 // Which views are kept.
 inline void visit_keyframe_fields(Config& config, core::FieldVisitor& visit) {
@@ -128,7 +142,7 @@ inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "keyframes after which a new landmark is tested by min_found_ratio",
          .min = 1,
          .max = 100});
-  visit("forget_after_keyframes", config.forget_after_keyframes,
+  visit("cull_unmatched_after_keyframes", config.cull_unmatched_after_keyframes,
         {.help = "keyframes after which a landmark with one observation is culled",
          .min = 1,
          .max = 10000});
@@ -167,6 +181,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit_refinement_fields(config, visit);
   visit_full_bundle_fields(config, visit);
   visit_schedule_fields(config, visit);
+  visit_known_fields(config, visit);
 }
 
 }  // namespace samewhere::map

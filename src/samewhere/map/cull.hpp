@@ -10,7 +10,8 @@ namespace samewhere::map {
 // - Landmarks that the keyframe `cull_after_keyframes` before the newest brought, if too few of the
 //   keyframes since then that should see them do, or if one observation without depth is all that
 //   is left. A camera that turns away proves nothing.
-// - Landmarks that the keyframe `forget_after_keyframes` before the newest brought and no second
+// - Landmarks that the keyframe `cull_unmatched_after_keyframes` before the newest brought and no
+// second
 //   keyframe saw, wherever the camera looked: most points of a cluttered view are never found
 //   again, and a map that kept them all would grow without end.
 // - At most one keyframe: that of the newest one's neighbours of whose landmarks three others see

@@ -18,9 +18,9 @@ struct Config {
   int window_frames = -1;
   int place_frames = 0;
   int shortlist = 30;
-  int views_of_place = 1;
-  int lost_candidates = 8;
-  int lost_place_frames = 30;
+  int views_per_place = 1;
+  int relocalization_candidates = 8;
+  int relocalization_place_frames = 30;
 
   // sampled search and every_queue only, section 3.1.4 of the published method
   int num_draws = 50;           // L
@@ -71,11 +71,11 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
                  "the candidates are of different places; 0: off",
          .min = 0,
          .max = 10000});
-  visit("views_of_place", config.views_of_place,
+  visit("views_per_place", config.views_per_place,
         {.help = "shortlist: largest number of candidates of one place", .min = 1, .max = 1000});
-  visit("lost_candidates", config.lost_candidates,
+  visit("relocalization_candidates", config.relocalization_candidates,
         {.help = "num_candidates in relocalization", .min = 1, .max = 1000});
-  visit("lost_place_frames", config.lost_place_frames,
+  visit("relocalization_place_frames", config.relocalization_place_frames,
         {.help = "place_frames in relocalization", .min = 0});
   visit_sampling(config, visit);
 }

@@ -50,7 +50,8 @@ class Retriever {
   std::vector<FoundView> search(const core::Descriptor& descriptor,
                                 const cv::Mat& features = {}) const;
   // For who is lost: he may be where he was a moment ago, and wants to know places that look alike
-  // rather than one place many times: no window, lost_candidates of either kind, lost_place_frames.
+  // rather than one place many times: no window, relocalization_candidates of either kind,
+  // relocalization_place_frames.
   std::vector<FoundView> search_places(const core::Descriptor& descriptor,
                                        const cv::Mat& features = {}) const;
   // For a map that knows which views show one place: so many more of either kind that search() asks

@@ -34,7 +34,7 @@ inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
 enum class StartModel { kHomographyOrEssential, kFundamental };
 
 // How a camera without depth starts, from two views.
-struct StartConfig {
+struct InitializationConfig {
   StartModel model = StartModel::kHomographyOrEssential;
   int min_matches = 100;
   int min_points = 60;
@@ -43,14 +43,14 @@ struct StartConfig {
   double min_homography_ratio = 0.45;
   double min_parallax_rad = 0.02;
   double min_point_parallax_rad = 0.01;
-  double max_rival_ratio = 0.7;
+  double max_competing_ratio = 0.7;
   int max_waiting_frames = 300;
   int provisional_keyframes = 20;
   double provisional_s = 5.0;
 };
 
 // When a start is given up.
-inline void visit_giving_up(StartConfig& config, core::FieldVisitor& visit) {
+inline void visit_giving_up(InitializationConfig& config, core::FieldVisitor& visit) {
   visit("max_waiting_frames", config.max_waiting_frames,
         {.help = "frames after which the first view is replaced", .min = 1, .max = 100000});
   visit("provisional_keyframes", config.provisional_keyframes,
@@ -63,7 +63,7 @@ inline void visit_giving_up(StartConfig& config, core::FieldVisitor& visit) {
          .max = 3600.0});
 }
 
-inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
+inline void visit_fields(InitializationConfig& config, core::FieldVisitor& visit) {
   visit("model", config.model,
         {.help = "two-view model: the better of homography and essential matrix, or the "
                  "fundamental matrix, eq. (18)-(22)",
@@ -87,7 +87,7 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
         {.help = "least median parallax, radians", .min = 0.001, .max = 1.0});
   visit("min_point_parallax_rad", config.min_point_parallax_rad,
         {.help = "least parallax of a triangulated point, radians", .min = 0.0, .max = 1.0});
-  visit("max_rival_ratio", config.max_rival_ratio,
+  visit("max_competing_ratio", config.max_competing_ratio,
         {.help = "ambiguous if a second motion has more than this share of the best one's inliers",
          .min = 0.1,
          .max = 1.0});
@@ -95,15 +95,15 @@ inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
 }
 
 // Who has lost his place, and where he may be found.
-struct LostConfig {
+struct RelocalizationConfig {
   double max_speed_m_s = 3.0;
   double max_ratio_without_depth = 0.9;
-  double max_rival_ratio = 0.75;
-  int views_to_resume = 5;
-  int frames_to_restart = 30;
+  double max_competing_ratio = 0.75;
+  int min_views = 5;
+  int reinitialize_after_frames = 30;
 };
 
-inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
+inline void visit_fields(RelocalizationConfig& config, core::FieldVisitor& visit) {
   visit(
       "max_speed_m_s", config.max_speed_m_s,
       {.help =
@@ -112,20 +112,132 @@ inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
        .max = 1000.0});
   visit("max_ratio_without_depth", config.max_ratio_without_depth,
         {.help = "without depth: features.max_ratio in relocalization", .min = 0.1, .max = 1.0});
-  visit("max_rival_ratio", config.max_rival_ratio,
+  visit("max_competing_ratio", config.max_competing_ratio,
         {.help = "ambiguous if a competing place has more than this share of the best one's "
                  "inliers, or of its inliers per visible landmark",
          .min = 0.0,
          .max = 1.0});
-  visit("views_to_resume", config.views_to_resume,
+  visit("min_views", config.min_views,
         {.help = "views that must support the place; one is enough within 1 s of tracking loss",
          .min = 1,
          .max = 10});
-  visit("frames_to_restart", config.frames_to_restart,
+  visit("reinitialize_after_frames", config.reinitialize_after_frames,
         {.help = "with depth: lost frames after which a map with fewer than provisional_keyframes "
                  "is re-initialized",
          .min = 1,
          .max = 1000000});
+}
+
+// Motion between two depth images, point to plane (depth_alignment.hpp).
+struct DepthAlignmentConfig {
+  double min_agreement = 0.9;
+  int iterations = 20;
+  double first_tukey = 12.0;
+  double tukey = 4.0;
+  double max_distance_m = 0.3;
+  double max_step_ratio = 0.1;
+  double min_patch_ratio = 0.0625;
+  double min_eigenvalue = 0.005;
+  double correlation = 10.0;
+  double max_sigma_m = 0.03;
+  double max_sigma_rad = 0.02;
+  double sigma_m = 0.002;
+  double sigma_per_square_m = 0.002;
+};
+
+inline void visit_alignment_method(DepthAlignmentConfig& config, core::FieldVisitor& visit) {
+  visit("iterations", config.iterations,
+        {.help = "largest number of Gauss-Newton iterations",
+         .min = 1,
+         .max = 200,
+         .is_expert = true});
+  visit("first_tukey", config.first_tukey,
+        {.help = "width of the Tukey loss in the first iteration, standard deviations",
+         .min = 1.0,
+         .max = 100.0,
+         .is_expert = true});
+  visit("tukey", config.tukey,
+        {.help = "width of the Tukey loss in the last iteration, standard deviations (4.685: 95 % "
+                 "efficiency)",
+         .min = 1.0,
+         .max = 100.0,
+         .is_expert = true});
+  visit("max_distance_m", config.max_distance_m,
+        {.help = "largest distance of associated points, metres",
+         .min = 0.01,
+         .max = 10.0,
+         .is_expert = true});
+  visit("max_step_ratio", config.max_step_ratio,
+        {.help = "relative depth step that separates two surfaces",
+         .min = 0.001,
+         .max = 1.0,
+         .is_expert = true});
+}
+
+inline void visit_alignment_acceptance(DepthAlignmentConfig& config, core::FieldVisitor& visit) {
+  visit("min_patch_ratio", config.min_patch_ratio,
+        {.help = "least share of the 8 x 8 pixel patches that must be inliers",
+         .min = 0.0,
+         .max = 1.0,
+         .is_expert = true});
+  visit("min_eigenvalue", config.min_eigenvalue,
+        {.help = "least eigenvalue of the mean normal matrix; noise on one bare wall has 0.0005",
+         .min = 0.0,
+         .max = 1.0,
+         .is_expert = true});
+  visit("correlation", config.correlation,
+        {.help = "factor on standard deviations, because errors of neighbouring patches correlate",
+         .min = 1.0,
+         .max = 1000.0,
+         .is_expert = true});
+  visit("max_sigma_m", config.max_sigma_m,
+        {.help = "largest standard deviation of the translation, metres",
+         .min = 1e-4,
+         .max = 10.0,
+         .is_expert = true});
+  visit("max_sigma_rad", config.max_sigma_rad,
+        {.help = "largest standard deviation of the rotation, radians",
+         .min = 1e-4,
+         .max = 3.0,
+         .is_expert = true});
+  visit("sigma_m", config.sigma_m,
+        {.help = "standard deviation of a depth, constant part, metres",
+         .min = 1e-5,
+         .max = 1.0,
+         .is_expert = true});
+  visit("sigma_per_square_m", config.sigma_per_square_m,
+        {.help = "the part that grows with the square of the depth, metres per square metre",
+         .min = 0.0,
+         .max = 1.0,
+         .is_expert = true});
+}
+
+inline void visit_fields(DepthAlignmentConfig& config, core::FieldVisitor& visit) {
+  visit("min_agreement", config.min_agreement,
+        {.help = "few features: least share of the surface points common to both depth images "
+                 "that must agree; above 1: off",
+         .min = 0.0,
+         .max = 1.1});
+  visit_alignment_method(config, visit);
+  visit_alignment_acceptance(config, visit);
+}
+
+// Moving objects: landmarks in front of a surface seen before (free_space.hpp).
+struct FreeSpaceConfig {
+  double margin_m = 0.15;
+  double margin_per_metre = 0.1;
+};
+
+inline void visit_fields(FreeSpaceConfig& config, core::FieldVisitor& visit) {
+  visit("margin_m", config.margin_m,
+        {.help = "a point nearer than the surface of earlier depth images by more is moving, "
+                 "metres",
+         .min = 0.0,
+         .max = 10.0,
+         .is_expert = true});
+  visit(
+      "margin_per_metre", config.margin_per_metre,
+      {.help = "additional margin per metre of depth", .min = 0.0, .max = 1.0, .is_expert = true});
 }
 
 struct Config {
@@ -137,11 +249,12 @@ struct Config {
   int min_inliers = 15;
   int weak_inliers = 40;
   int sure_inliers = 100;
-  double min_share_by_depth = 0.9;
   double max_scale_change = 4.0;
-  LostConfig lost;
-  StartConfig start;
+  RelocalizationConfig relocalization;
+  InitializationConfig initialization;
   DriftConfig drift;
+  DepthAlignmentConfig depth_alignment;
+  FreeSpaceConfig free_space;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
@@ -165,21 +278,19 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "fewer inliers after the first search: the search radius is enlarged",
          .min = 6,
          .max = 10000});
-  visit("min_share_by_depth", config.min_share_by_depth,
-        {.help = "with depth and few features: least share of common surface points that must "
-                 "agree for a pose by depth alignment; above 1: off",
-         .min = 0.0,
-         .max = 1.1});
   visit("max_scale_change", config.max_scale_change,
         {.help = "without depth: change of speed and of landmark depth, both by this factor, from "
                  "which scale drift is suspected and poses are weak; up to 1: off",
          .min = 0.0,
          .max = 1000.0});
-  visit("lost", config.lost, {.help = "Relocalization"});
-  visit("start", config.start,
+  visit("relocalization", config.relocalization, {.help = "Relocalization"});
+  visit("initialization", config.initialization,
         {.help = "Initialization of one camera without depth, from two views"});
   visit("drift", config.drift,
         {.help = "Drift model of the odometry, from which its information is derived"});
+  visit("depth_alignment", config.depth_alignment,
+        {.help = "Depth alignment, where features are few (decision 024)"});
+  visit("free_space", config.free_space, {.help = "Moving objects by free space"});
 }
 
 }  // namespace samewhere::track

@@ -16,21 +16,21 @@ struct Config {
   int min_inliers = 40;
   double min_spread_ratio = 0.12;
   bool require_pose = true;
-  double max_disagreement_m = 0.15;
-  double max_disagreement_rad = 0.05;
+  double max_pose_difference_m = 0.15;
+  double max_pose_difference_rad = 0.05;
   double max_error_px = 4.0;
   double refine_radius_px = 6.0;
   int ransac_iterations = 500;
   int min_views = 10;
   int min_inliers_in_sequence = 20;
   int max_view_gap = 3;
-  int wait_views = 20;
+  int max_pending_views = 20;
   double same_view_ratio = 0.15;
-  int look_around_frames = 0;
+  int neighbour_frames = 0;
   double max_odometry_chi_square = 16.81;
-  double max_rival_chi_square = 30.0;
-  double min_rival_gain = 6.0;
-  double max_other_place_ratio = 0.75;
+  double max_competing_chi_square = 30.0;
+  double min_competing_gain = 6.0;
+  double max_competing_place_ratio = 0.75;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
   bool measure_all = false;
@@ -57,12 +57,12 @@ inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
   visit("require_pose", config.require_pose,
         {.help =
              "candidates without a relative pose are rejected; off in `loops` and relocalization"});
-  visit("max_disagreement_m", config.max_disagreement_m,
+  visit("max_pose_difference_m", config.max_pose_difference_m,
         {.help = "pose consistency: largest translation between the poses from the query's and "
                  "from the match's depth, metres",
          .min = 0.001,
          .max = 100.0});
-  visit("max_disagreement_rad", config.max_disagreement_rad,
+  visit("max_pose_difference_rad", config.max_pose_difference_rad,
         {.help = "the same for the rotation, radians", .min = 0.001, .max = 3.2});
 }
 
@@ -75,7 +75,7 @@ inline void visit_sequence(Config& config, core::FieldVisitor& visit) {
         {.help = "`loops`: least geometric inliers of each of them", .min = 7, .max = 100000});
   visit("max_view_gap", config.max_view_gap,
         {.help = "`loops`: largest gap in a sequence, views", .min = 1, .max = 100});
-  visit("wait_views", config.wait_views,
+  visit("max_pending_views", config.max_pending_views,
         {.help = "`loops`: views after which a pending candidate is rejected",
          .min = 1,
          .max = 1000});
@@ -84,7 +84,7 @@ inline void visit_sequence(Config& config, core::FieldVisitor& visit) {
       {.help = "`loops`: a frame with this share of the last view's features is part of that view",
        .min = 0.0,
        .max = 1.0});
-  visit("look_around_frames", config.look_around_frames,
+  visit("neighbour_frames", config.neighbour_frames,
         {.help = "`loops`: largest offset in frames at which neighbours of the best match are "
                  "verified, then half of it and so on; 0: off",
          .min = 0,
@@ -103,17 +103,17 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
                  "degrees of freedom; 16.81: 99 %",
          .min = 1.0,
          .max = 1e9});
-  visit("max_rival_chi_square", config.max_rival_chi_square,
+  visit("max_competing_chi_square", config.max_competing_chi_square,
         {.help = "competing hypothesis: the same from the pose after the last loop, with the drift "
                  "since then",
          .min = 1.0,
          .max = 1e9});
-  visit("min_rival_gain", config.min_rival_gain,
+  visit("min_competing_gain", config.min_competing_gain,
         {.help = "competing hypothesis: least gain in log-likelihood, times two, over the loops "
                  "that it contradicts",
          .min = 0.0,
          .max = 1e9});
-  visit("max_other_place_ratio", config.max_other_place_ratio,
+  visit("max_competing_place_ratio", config.max_competing_place_ratio,
         {.help = "ambiguous if another place of the same view passes all checks with more than "
                  "this share of the inliers",
          .min = 0.0,
