@@ -7,7 +7,7 @@
 #include <samewhere/report/loops.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
-#include <samewhere/verify/measure_rival.hpp>
+#include <samewhere/verify/measure_competing.hpp>
 
 namespace samewhere::pipeline {
 namespace {

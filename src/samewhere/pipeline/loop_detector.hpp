@@ -18,7 +18,7 @@
 #include <samewhere/retrieve/retriever.hpp>
 #include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/measure.hpp>
-#include <samewhere/verify/waiting.hpp>
+#include <samewhere/verify/sequence_verifier.hpp>
 
 namespace samewhere::pipeline {
 

@@ -3,7 +3,7 @@
 
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/verify/decide.hpp>
-#include <samewhere/verify/waiting.hpp>
+#include <samewhere/verify/sequence_verifier.hpp>
 
 namespace samewhere::pipeline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <samewhere/features/test_world.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
-#include <samewhere/verify/measure_rival.hpp>
+#include <samewhere/verify/measure_competing.hpp>
 
 namespace samewhere::verify {
 namespace {

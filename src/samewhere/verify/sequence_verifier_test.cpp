@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/verify/waiting.hpp>
+#include <samewhere/verify/sequence_verifier.hpp>
 
 namespace samewhere::verify {
 namespace {

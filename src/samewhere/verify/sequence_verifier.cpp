@@ -5,7 +5,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/verify/decide.hpp>
-#include <samewhere/verify/waiting.hpp>
+#include <samewhere/verify/sequence_verifier.hpp>
 
 namespace samewhere::verify {
 namespace {

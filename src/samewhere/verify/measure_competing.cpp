@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include <samewhere/verify/measure_odometry.hpp>
-#include <samewhere/verify/measure_rival.hpp>
+#include <samewhere/verify/measure_competing.hpp>
 #include <samewhere/verify/odometry_chain.hpp>
 
 namespace samewhere::verify {
