@@ -60,7 +60,7 @@ core::LedgerRow known_of(const scene::LoopEdge& loop, const core::Ledger& ledger
 }
 
 void require_not_lost(const core::LedgerRow& row) {
-  if (!row.candidate.is_lost) return;
+  if (row.candidate.origin != core::Origin::kRelocalization) return;
   throw InputError(name_of(row) +
                    " was taken for a view of which nobody knew where it is; expected a candidate "
                    "for a loop");
@@ -165,7 +165,7 @@ ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const c
                       const Config& config) {
   const core::CandidateId cause = row.candidate.id;
   const scene::LoopEdge edge = forced_edge(map, row, config);
-  const auto& rival = core::evidence_of(row.verdict).rival;
+  const auto& rival = core::evidence_of(row.verdict).competing_loop;
   Correction correction = with_loop(holds(map, cause) ? without_loop(map, cause, config) : map,
                                     edge, config, rival ? rival->first_loop : core::CandidateId());
   const correct::Closing& closing = correction.closing;

@@ -7,17 +7,12 @@
 #include <samewhere/features/orb.hpp>
 #include <samewhere/pipeline/figures.hpp>
 #include <samewhere/pipeline/recognition.hpp>
+#include <samewhere/pipeline/verifier_settings.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 
 namespace samewhere::pipeline {
 namespace {
-
-// No frame has an odometry here.
-std::optional<core::OdometryEvidence> without_odometry(const core::Candidate& /*candidate*/,
-                                                       const core::Sim3& /*match_from_query*/) {
-  return std::nullopt;
-}
 
 // The time of all steps of a frame, for each frame that all of them have had.
 void add_whole_frames(core::Timings& timings) {
@@ -58,7 +53,8 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps) {
   searching.join();
 }
 
-Recognition::Recognition(const Config& config) : config_(config), detector_(config) {}
+Recognition::Recognition(const Config& config)
+    : config_(config), detector_(config, recognition_settings(config)) {}
 
 RecognitionSteps Recognition::steps() {
   return {.describe = [this](const core::Frame& frame) { return describe(frame); },
@@ -70,7 +66,7 @@ DescribedFrame Recognition::describe(const core::Frame& frame) {
   DescribedFrame described;
   {
     const core::ScopedTimer timer(describe_timings_, "describe");
-    described.descriptor = detector_.describe(frame.id, frame.images[0]);
+    described.descriptor = detector_.index().describe(frame.id, frame.images[0]);
   }
   const core::ScopedTimer timer(describe_timings_, "features and thumbnail");
   described.view = features::extract(frame, config_.features);
@@ -80,7 +76,7 @@ DescribedFrame Recognition::describe(const core::Frame& frame) {
 
 SearchedFrame Recognition::search(DescribedFrame described) {
   const core::ScopedTimer timer(search_timings_, "search");
-  SearchedFrame searched{.found = detector_.search(described.descriptor, described.view)};
+  SearchedFrame searched{.found = detector_.index().search(described.descriptor, described.view)};
   searched.described = std::move(described);
   return searched;
 }
@@ -94,7 +90,7 @@ void Recognition::judge(const SearchedFrame& searched) {
   }
   const core::ScopedTimer timer(judge_timings_, "verify");
   found_.record.thumbnails[view.frame] = thumbnail;
-  keep(detector_.judge(descriptor, candidates, view, {without_odometry}));
+  keep(detector_.verify(descriptor, candidates, view, verify::WithoutMap()));
 }
 
 void Recognition::keep(const std::vector<core::LedgerRow>& rows) {
@@ -107,7 +103,7 @@ void Recognition::find_best_of_queries() {
   for (const core::LedgerRow* row : report::final_rows(found_.record.ledger))
     rows_of[row->candidate.query].push_back(*row);
   for (const auto& [query, rows] : rows_of) {
-    const core::LedgerRow& best = *best_of_query(rows, config_.verify);
+    const core::LedgerRow& best = *verify::best_of_query(rows, config_.verify);
     const double score = verify::score(core::evidence_of(best.verdict), config_.verify);
     found_.matches.push_back({query, best.candidate.match, score});
     if (core::is_loop(best.verdict)) found_.accepted.push_back(found_.matches.back());
@@ -128,7 +124,7 @@ void Recognition::report_to(RunOutcome& outcome) && {
   outcome.matches = std::move(found_.matches);
   outcome.accepted = std::move(found_.accepted);
   outcome.record.figures.push_back(
-      describer_figure(config_.describe, detector_.describer_checksum()));
+      describer_figure(config_.describe, detector_.index().describer_checksum()));
 }
 
 }  // namespace samewhere::pipeline

@@ -3,7 +3,7 @@
 
 #include <samewhere/pipeline/replay.hpp>
 #include <samewhere/verify/decide.hpp>
-#include <samewhere/verify/sequence_verifier.hpp>
+#include <samewhere/verify/pending_candidates.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -83,7 +83,7 @@ class SecondJudge {
 
   verify::Config config_;
   verify::History history_;
-  verify::Waiting waiting_;
+  verify::PendingCandidates waiting_;
   int view_ = 0;
   std::map<core::CandidateId, core::Verdict> verdicts_;
 };

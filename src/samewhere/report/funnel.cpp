@@ -53,12 +53,12 @@ std::string_view question_of(core::Refusal refusal) {
       return "are they spread over the image?";
     case core::Refusal::kPose:
       return "do they give a relative pose, where one is needed?";
-    case core::Refusal::kAgreement:
+    case core::Refusal::kConsistency:
       return "do both views find the same relative pose?";
     case core::Refusal::kOdometry:
-      return "does it fit the path travelled?";
-    case core::Refusal::kRival:
-      return "has no loop put the query elsewhere already?";
+      return "does it fit odometry?";
+    case core::Refusal::kCompeting:
+      return "does no other place explain the query?";
     case core::Refusal::kSequence:
       return "do the views around it go on to match, where nothing else can tell?";
     case core::Refusal::kGraph:

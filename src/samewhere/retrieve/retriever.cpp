@@ -95,7 +95,7 @@ std::vector<FoundView> Retriever::found_by(const core::Descriptor& descriptor,
     });
     if (is_known) continue;
     found.push_back(view_at(one.position));
-    found.back().is_by_features = true;
+    found.back().origin = core::Origin::kVisualWords;
   }
   return found;
 }
@@ -153,7 +153,7 @@ std::vector<core::Candidate> compare(const core::Descriptor& query,
     candidates.push_back({.query = query.frame,
                           .match = view.frame,
                           .similarity = core::ncc(query.unit, view.unit),
-                          .is_by_features = view.is_by_features});
+                          .origin = view.origin});
   }
   std::sort(
       candidates.begin(), candidates.end(), [](const core::Candidate& a, const core::Candidate& b) {

@@ -19,7 +19,7 @@ namespace samewhere::retrieve {
 struct FoundView {
   core::FrameId frame;
   std::vector<float> unit;
-  bool is_by_features = false;  // not by its looks
+  core::Origin origin = core::Origin::kRetrieved;  // or kVisualWords
 };
 
 // The exact similarity of what the search found: candidates with their NCC, eq. (8)-(13), most

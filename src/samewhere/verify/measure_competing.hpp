@@ -9,25 +9,25 @@
 
 namespace samewhere::verify {
 
-// What the loop `claim` would have to be better than: the place where the last loop before it on
-// the path, or one of the query itself, has put the camera already. How far from there the claim
-// would put it, against the drift that odometry may have gathered since that loop alone, is the
-// rival's. How well the map knows the way between both places does not count: a claim that only an
-// error of that way could save is a second place for one view. Nothing where no loop came before:
-// the first look-alike has no rival; nor where the match is of a part of the map that nothing joins
-// with it. Beyond max_competing_chi_square, also how much likelier odometry makes the claim than
-// the first of the loops on its path that contradict it (docs/decisions/023).
-std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
-                                                 const scene::LoopEdge& claim,
-                                                 const ScaleErrors& scale, const Config& config);
+// Competing hypothesis of an earlier loop: the last loop before the candidate `claim` on its
+// odometry chain, or one of the query itself, has put the query at another place. Measured is how
+// far from there the claim would put it, against the drift since that loop alone: what the map
+// knows between the two places does not count, since a claim that only an error there could explain
+// is a second place for one view. Nothing without an earlier loop, nor where nothing connects the
+// match with it. Beyond max_competing_chi_square also the gain over the first of the loops that
+// contradict the claim (docs/decisions/016, 023).
+std::optional<core::CompetingLoopEvidence> measure_competing_loop(const scene::MapVersion& map,
+                                                                  const scene::LoopEdge& claim,
+                                                                  const ScaleErrors& scale,
+                                                                  const Config& config);
 
-// Two claims about one view: how far apart they put it, if the map knows that they speak of two
-// places, for odometry cannot have drifted so much between their matches
-// (max_competing_chi_square). Nothing if they may be one place, or if nothing joins the two.
-std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVersion& map,
-                                                            const scene::LoopEdge& claim,
-                                                            const scene::LoopEdge& other,
-                                                            const ScaleErrors& scale,
-                                                            const Config& config);
+// Competing hypothesis of the same query: two claims whose matches odometry keeps apart
+// (max_competing_chi_square), and the distance between the query's poses by both. Nothing if they
+// can show one place, or if nothing connects them (docs/decisions/028).
+std::optional<core::CompetingPlaceEvidence> measure_competing_place(const scene::MapVersion& map,
+                                                                    const scene::LoopEdge& claim,
+                                                                    const scene::LoopEdge& other,
+                                                                    const ScaleErrors& scale,
+                                                                    const Config& config);
 
 }  // namespace samewhere::verify

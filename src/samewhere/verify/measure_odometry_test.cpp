@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/features/test_world.hpp>
-#include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/measure_competing.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::verify {
 namespace {
@@ -142,11 +142,11 @@ scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres)
   return claim(query, 3, match_from_query);
 }
 
-TEST(MeasureOtherPlace, TwoClaimsShowTwoPlacesIfOdometryCannotJoinThem) {
+TEST(MeasureCompetingPlace, TwoClaimsShowTwoPlacesIfOdometryCannotJoinThem) {
   const scene::MapVersion map = corridor(40);
   const core::Rigid3 here;
   const auto places = [&](const scene::LoopEdge& one, const scene::LoopEdge& other) {
-    return measure_other_place(map, one, other, {}, {});
+    return measure_competing_place(map, one, other, {}, {});
   };
   const auto apart = places(claim(39, 2, here), claim(39, 8, here));
   ASSERT_TRUE(apart) << "it cannot be at both ends of six metres";
@@ -157,16 +157,16 @@ TEST(MeasureOtherPlace, TwoClaimsShowTwoPlacesIfOdometryCannotJoinThem) {
       << "one place, seen from two";
 }
 
-TEST(MeasureRival, TheFirstLookAlikeHasNone) {
+TEST(MeasureCompetingLoop, TheFirstLookAlikeHasNone) {
   const scene::MapVersion map = corridor_with_loop();
-  EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), {}, {}));
-  EXPECT_TRUE(measure_rival(map, sideways(map, 20, 1.8), {}, {}));
+  EXPECT_FALSE(measure_competing_loop(map, sideways(map, 19, 1.8), {}, {}));
+  EXPECT_TRUE(measure_competing_loop(map, sideways(map, 20, 1.8), {}, {}));
 }
 
-TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
+TEST(MeasureCompetingLoop, WhatTheLastLoopSaysFadesWithTheWaySince) {
   const scene::MapVersion map = corridor_with_loop();
   const auto after = [&](int keyframes, double metres) {
-    return *measure_rival(map, sideways(map, 20 + keyframes, metres), {}, {});
+    return *measure_competing_loop(map, sideways(map, 20 + keyframes, metres), {}, {});
   };
   EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
   EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
@@ -189,25 +189,25 @@ scene::MapVersion corridor_moved_by(const std::vector<int>& queries, double metr
   return apply(map, edit);
 }
 
-TEST(MeasureRival, OdometrySpeaksForWhoSaysWhatItSaid) {
+TEST(MeasureCompetingLoop, OdometrySpeaksForWhoSaysWhatItSaid) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 4.0);
-  const auto back = measure_rival(map, sideways(map, 24, -4.0), {}, {});
+  const auto back = measure_competing_loop(map, sideways(map, 24, -4.0), {}, {});
   ASSERT_TRUE(back && back->gain);
   EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second only says what the first did";
   EXPECT_GT(*back->gain, 9.0);
-  const auto further = measure_rival(map, sideways(map, 24, 4.0), {}, {});
+  const auto further = measure_competing_loop(map, sideways(map, 24, 4.0), {}, {});
   ASSERT_TRUE(further && further->gain);
   EXPECT_LT(*further->gain, -9.0);
 }
 
-TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
+TEST(MeasureCompetingLoop, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
   scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  const auto without = measure_rival(map, sideways(map, 24, -1.8), {}, {});
+  const auto without = measure_competing_loop(map, sideways(map, 24, -1.8), {}, {});
   ASSERT_TRUE(without && without->gain);
   scene::Edit edit;
   edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
   map = apply(map, edit);
-  const auto with = measure_rival(map, sideways(map, 24, -1.8), {}, {});
+  const auto with = measure_competing_loop(map, sideways(map, 24, -1.8), {}, {});
   ASSERT_TRUE(with && with->gain);
   EXPECT_EQ(with->first_loop, core::CandidateId(20));
   EXPECT_GT(*with->gain, 3.0 * std::abs(*without->gain))
@@ -215,44 +215,44 @@ TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst
 }
 
 // After a long way odometry allows both; but it goes better with the lies before it than the claim.
-TEST(MeasureRival, ALoopThatGoesWithTheContradictorsIsNoGroundForTheClaim) {
+TEST(MeasureCompetingLoop, ALoopThatGoesWithTheContradictorsIsNoGroundForTheClaim) {
   const scene::MapVersion map =
       corridor_moved_by({20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70}, 4.0);
-  const auto rival = measure_rival(map, sideways(map, 72, -4.0), {}, {});
-  ASSERT_TRUE(rival && rival->gain);
-  EXPECT_EQ(rival->first_loop, core::CandidateId(20));
+  const auto competing = measure_competing_loop(map, sideways(map, 72, -4.0), {}, {});
+  ASSERT_TRUE(competing && competing->gain);
+  EXPECT_EQ(competing->first_loop, core::CandidateId(20));
 }
 
 // Its short way leaves a claim little room, but that is nothing against a loop whose way was long.
-TEST(MeasureRival, AMatchNearByIsNoEvidenceByItself) {
+TEST(MeasureCompetingLoop, AMatchNearByIsNoEvidenceByItself) {
   scene::MapVersion map = corridor(80);
   scene::Edit edit;
   edit.loops.push_back(claim(60, 3, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 57.0}}));
   map = apply(map, edit);
-  const auto rival =
-      measure_rival(map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), {}, {});
-  ASSERT_TRUE(rival && rival->gain);
-  EXPECT_LT(*rival->gain, -10.0);
+  const auto competing = measure_competing_loop(
+      map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), {}, {});
+  ASSERT_TRUE(competing && competing->gain);
+  EXPECT_LT(*competing->gain, -10.0);
 }
 
-TEST(MeasureRival, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
+TEST(MeasureCompetingLoop, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), {}, {})->gain);
-  const auto beyond = measure_rival(map, sideways(map, 24, 8.0), {}, {});
+  EXPECT_FALSE(measure_competing_loop(map, sideways(map, 24, 0.1), {}, {})->gain);
+  const auto beyond = measure_competing_loop(map, sideways(map, 24, 8.0), {}, {});
   EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_FALSE(beyond->gain);
 }
 
-TEST(MeasureRival, WithoutDepthNothingIsCompared) {
+TEST(MeasureCompetingLoop, WithoutDepthNothingIsCompared) {
   scene::MapVersion map =
       corridor(40, features::test_view(features::test_world(1, 20), 0, core::Rigid3{}, 0.0, false));
   scene::Edit edit;
   edit.loops.push_back(sideways(map, 20, 0.0));
   map = apply(map, edit);
-  const auto rival = measure_rival(map, sideways(map, 22, 1.8), {}, {});
-  ASSERT_TRUE(rival);
-  EXPECT_GT(rival->mahalanobis_squared, Config{}.max_competing_chi_square);
-  EXPECT_FALSE(rival->gain);
+  const auto competing = measure_competing_loop(map, sideways(map, 22, 1.8), {}, {});
+  ASSERT_TRUE(competing);
+  EXPECT_GT(competing->mahalanobis_squared, Config{}.max_competing_chi_square);
+  EXPECT_FALSE(competing->gain);
 }
 
 }  // namespace

@@ -1,136 +1,54 @@
-#include <algorithm>
-#include <limits>
-
-#include <fmt/format.h>
-
-#include <samewhere/core/errors.hpp>
+#include <samewhere/core/similarity.hpp>
 #include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/sequence_verifier.hpp>
 
 namespace samewhere::verify {
-namespace {
 
-constexpr int kMaxForetold = 4;  // or a few more
+SequenceVerifier::SequenceVerifier(const MeasureSettings& settings, std::uint64_t window_frames)
+    : config_(settings.verify),
+      window_frames_(window_frames),
+      numbered_(settings.features, settings.verify.same_view_ratio),
+      pending_(settings.verify) {}
 
-// Who was looked for because he fits proves no sequence.
-bool is_claim(const core::Candidate& candidate) {
-  return !candidate.is_foretold && !candidate.is_by_features;
+void SequenceVerifier::add(const features::View& view, const core::Descriptor& descriptor) {
+  if (may_need_sequences(config_)) numbered_.add(view, descriptor);
 }
 
-ViewPair views_of(const core::Evidence& evidence) {
-  return {evidence.sequence->query_view, evidence.sequence->match_view};
+void SequenceVerifier::number(const core::Candidate& candidate, core::Evidence& evidence) const {
+  if (!evidence.geometry || !needs_sequence(*evidence.geometry, config_)) return;
+  evidence.sequence = {.query_view = numbered_.number_of(candidate.query),
+                       .match_view = numbered_.number_of(candidate.match)};
 }
 
-}  // namespace
+void SequenceVerifier::record(const core::LedgerRow& row) {
+  if (!may_need_sequences(config_)) return;
+  recorded_.insert({row.candidate.query, row.candidate.match});
+  const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
+  if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
+    pending_.add(row.candidate, ambiguous->evidence);
+}
 
-Waiting::Waiting(const Config& config) : config_(config) {
-  if (config.min_views > config.max_pending_views + 1) {
-    throw core::InputError(
-        fmt::format("verify.min_views is {}; expected at most {}, for nobody waits longer than "
-                    "verify.max_pending_views {}",
-                    config.min_views, config.max_pending_views + 1, config.max_pending_views));
+std::vector<core::Candidate> SequenceVerifier::predict(const core::Descriptor& descriptor) {
+  std::vector<core::Candidate> candidates;
+  if (!may_need_sequences(config_)) return candidates;
+  const int now = numbered_.number_of(descriptor.frame);
+  for (const ViewPair& views : pending_.predict(now)) {
+    const auto* match = numbered_.at(views.match);
+    const auto* query = views.query == now ? &descriptor : numbered_.at(views.query);
+    if (query == nullptr || match == nullptr) continue;
+    const bool is_recent = query->frame.index() <= match->frame.index() + window_frames_;
+    if (is_recent || recorded_.contains({query->frame, match->frame})) continue;
+    candidates.push_back({.query = query->frame,
+                          .match = match->frame,
+                          .similarity = core::ncc(query->unit, match->unit),
+                          .origin = core::Origin::kPredicted});
   }
+  return candidates;
 }
 
-void Waiting::add(const core::Candidate& candidate, const core::Evidence& evidence) {
-  core::require(evidence.geometry && evidence.sequence, "who waits was measured");
-  const ViewPair views = views_of(evidence);
-  const auto later = std::upper_bound(
-      waiters_.begin(), waiters_.end(), views.query,
-      [](int view, const Waiter& waiter) { return view < waiter.evidence.sequence->query_view; });
-  waiters_.insert(later, {candidate, evidence});
-  if (!is_claim(candidate)) return;
-  int& num_inliers = claims_[views];
-  num_inliers = std::max(num_inliers, evidence.geometry->num_inliers);
-}
-
-std::vector<ViewPair> Waiting::foretold(int query_view) {
-  std::vector<Sequence> near;
-  for (const auto& [views, sequence] : sequences()) {
-    if (sequence.num_views > 1 && sequence.last.query >= query_view - config_.max_view_gap)
-      near.push_back(sequence);
-  }
-  std::stable_sort(near.begin(), near.end(), is_longer);
-  std::vector<ViewPair> pairs;
-  for (const Sequence& sequence : near) {
-    if (sequence.last.query < query_view) add_next(sequence.last, query_view, sequence.step, pairs);
-    for (int gap = 1; gap <= config_.max_view_gap; ++gap)
-      add_next(sequence.first, sequence.first.query - gap, sequence.step, pairs);
-    if (static_cast<int>(pairs.size()) >= kMaxForetold) break;
-  }
-  return pairs;
-}
-
-void Waiting::add_next(const ViewPair& end, int query, int step, std::vector<ViewPair>& pairs) {
-  if (query < first_kept_) return;
-  const int direction = query > end.query ? 1 : -1;
-  const int query_gap = direction * (query - end.query);
-  for (const int match_gap : {query_gap, query_gap + 1, query_gap - 1}) {
-    const ViewPair pair{query, end.match + direction * step * match_gap};
-    if (match_gap < 1 || match_gap > config_.max_view_gap) continue;
-    if (foretold_.insert(pair).second) pairs.push_back(pair);
-  }
-}
-
-std::vector<core::LedgerRow> Waiting::settle(int view) {
-  std::vector<core::LedgerRow> rows = settle_until(view - config_.max_pending_views);
-  // whoever still waits may hang on what came max_pending_views before it
-  first_kept_ = std::max(first_kept_, view - 2 * config_.max_pending_views);
-  const ViewPair first{first_kept_, std::numeric_limits<int>::min()};
-  claims_.erase(claims_.begin(), claims_.lower_bound(first));
-  foretold_.erase(foretold_.begin(), foretold_.lower_bound(first));
-  return rows;
-}
-
-std::vector<core::LedgerRow> Waiting::settle_all() {
-  return settle_until(std::numeric_limits<int>::max());
-}
-
-std::map<ViewPair, Sequence> Waiting::sequences() const {
-  std::vector<Claim> claims;
-  for (const auto& [views, num_inliers] : claims_) claims.push_back({views, num_inliers});
-  const std::vector<Sequence> longest = longest_sequences(claims, config_.max_view_gap);
-  std::map<ViewPair, Sequence> sequences;
-  for (std::size_t i = 0; i < claims.size(); ++i) sequences[claims[i].views] = longest[i];
-  return sequences;
-}
-
-Sequence Waiting::held_by(const ViewPair& foretold,
-                          const std::map<ViewPair, Sequence>& longest) const {
-  const int gap = config_.max_view_gap;
-  constexpr int kAny = std::numeric_limits<int>::min();
-  Sequence best;
-  const auto end = longest.lower_bound({foretold.query + gap + 1, kAny});
-  for (auto it = longest.lower_bound({foretold.query - gap, kAny}); it != end; ++it) {
-    const auto& [other, sequence] = *it;
-    const bool is_next = goes_on(foretold, other, sequence.step, gap) ||
-                         goes_on(other, foretold, sequence.step, gap);
-    if (is_next && is_longer(sequence, best)) best = sequence;
-  }
-  return best;
-}
-
-std::vector<core::LedgerRow> Waiting::settle_until(int last_view_given_up) {
-  std::vector<core::LedgerRow> rows;
-  if (waiters_.empty()) return rows;
-  const std::map<ViewPair, Sequence> longest = sequences();
-  std::vector<Waiter> undecided;
-  for (Waiter& waiter : waiters_) {
-    core::SequenceEvidence& evidence = *waiter.evidence.sequence;
-    const ViewPair views = views_of(waiter.evidence);
-    const Sequence sequence =
-        is_claim(waiter.candidate) ? longest.at(views) : held_by(views, longest);
-    evidence.num_views = sequence.num_views;
-    evidence.num_inliers = sequence.num_inliers;
-    evidence.is_over = evidence.query_view <= last_view_given_up;
-    core::Verdict verdict = decide(waiter.candidate, waiter.evidence, {}, config_);
-    if (std::holds_alternative<core::Ambiguous>(verdict))
-      undecided.push_back(waiter);
-    else
-      rows.push_back({waiter.candidate, std::move(verdict)});
-  }
-  waiters_ = std::move(undecided);
-  return rows;
+std::vector<core::LedgerRow> SequenceVerifier::settle(core::FrameId frame) {
+  if (!may_need_sequences(config_)) return {};
+  return pending_.settle(numbered_.number_of(frame));
 }
 
 }  // namespace samewhere::verify

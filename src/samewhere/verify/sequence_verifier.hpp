@@ -1,53 +1,52 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include <samewhere/core/descriptor.hpp>
 #include <samewhere/core/ledger.hpp>
-#include <samewhere/verify/config.hpp>
-#include <samewhere/verify/sequence.hpp>
+#include <samewhere/features/features.hpp>
+#include <samewhere/verify/measure.hpp>
+#include <samewhere/verify/numbered_views.hpp>
+#include <samewhere/verify/pending_candidates.hpp>
 
 namespace samewhere::verify {
 
-// Candidates whose own evidence is good, and who wait for what the views around them say.
-class Waiting {
+// Sequence verification, for recognition alone: a candidate without a relative pose is pending
+// until consecutive views match, too, and the continuation of a sequence is predicted. Does nothing
+// where may_need_sequences() is false. After Milford and Wyeth, SeqSLAM, ICRA 2012
+// (docs/decisions/015).
+class SequenceVerifier {
  public:
-  // Throws InputError if who waits could not live to see a sequence of min_views.
-  explicit Waiting(const Config& config);
+  // Frames younger than the window are never predicted.
+  SequenceVerifier(const MeasureSettings& settings, std::uint64_t window_frames);
 
-  // evidence.sequence knows the views.
-  void add(const core::Candidate& candidate, const core::Evidence& evidence);
+  // The next frame. Frames ascend.
+  void add(const features::View& view, const core::Descriptor& descriptor);
 
-  // What else should match if the best sequences that reach up to this query view are any: this
-  // view, and those before a sequence began, the likeliest first. Nothing is named twice.
-  std::vector<ViewPair> foretold(int query_view);
+  // Sets evidence.sequence to the numbers of both views where a sequence is needed.
+  void number(const core::Candidate& candidate, core::Evidence& evidence) const;
 
-  // Further verdicts on those that can be decided now that view `view` was seen, by query: a
-  // sequence long enough holds them, or they have waited for max_pending_views in vain.
-  std::vector<core::LedgerRow> settle(int view);
-  // Nothing comes any more.
-  std::vector<core::LedgerRow> settle_all();
+  // The verdict on a candidate: an ambiguous one is pending from now on.
+  void record(const core::LedgerRow& row);
+
+  // Candidates that would continue the best sequences at this frame, the last that was added; none
+  // with a verdict already.
+  std::vector<core::Candidate> predict(const core::Descriptor& descriptor);
+
+  // Later verdicts on pending candidates after this frame, and at the end of the input.
+  std::vector<core::LedgerRow> settle(core::FrameId frame);
+  std::vector<core::LedgerRow> settle_all() { return pending_.settle_all(); }
 
  private:
-  struct Waiter {
-    core::Candidate candidate;
-    core::Evidence evidence;
-  };
-
-  // Of every pair of views that somebody found.
-  std::map<ViewPair, Sequence> sequences() const;
-  // The longest of these that a pair goes on from, or that goes on from it.
-  Sequence held_by(const ViewPair& foretold, const std::map<ViewPair, Sequence>& longest) const;
-  // The pairs not named yet in which the query view would go on from an end of a sequence.
-  void add_next(const ViewPair& end, int query, int step, std::vector<ViewPair>& pairs);
-  std::vector<core::LedgerRow> settle_until(int last_view_given_up);
-
   Config config_;
-  std::vector<Waiter> waiters_;     // undecided; their query views ascend
-  std::map<ViewPair, int> claims_;  // inliers of the best claim of these views
-  std::set<ViewPair> foretold_;     // so far
-  int first_kept_ = 0;              // query views before are forgotten
+  std::uint64_t window_frames_;
+  NumberedViews numbered_;
+  PendingCandidates pending_;
+  std::set<std::pair<core::FrameId, core::FrameId>> recorded_;  // query, match
 };
 
 }  // namespace samewhere::verify
