@@ -51,7 +51,7 @@ TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
   const Outcome found = run(loops + quoted(path("mine.bin")));
   EXPECT_EQ(found.exit_code, 0) << found.err;
   // of frames 3, 4 and 5: all older ones that the window allows
-  EXPECT_EQ(row_of(found.out, "candidates judged"), "6");
+  EXPECT_EQ(row_of(found.out, "loop candidates"), "6");
   EXPECT_EQ(run("train words " + walk + " --out " + quoted(path("words.json"))).exit_code, 2);
   const Outcome missing = run(loops + "no.bin --force");
   EXPECT_EQ(missing.exit_code, 2);
