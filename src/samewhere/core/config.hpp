@@ -9,7 +9,7 @@
 
 namespace samewhere::core {
 
-// What a person must know about a setting beside its name and default.
+// Description of a setting beside its name and default.
 struct FieldInfo {
   std::string_view help;  // meaning and unit, half a line
   std::optional<double> min = std::nullopt;
