@@ -26,13 +26,13 @@ struct Variant {
 
 std::vector<Variant> variants() {
   const std::string no_odometry = "verify.max_odometry_chi_square=1e9";
-  const std::string no_rival = "verify.max_rival_chi_square=1e9";
-  const std::string no_other_place = "verify.max_other_place_ratio=1e9";
+  const std::string no_rival = "verify.max_competing_chi_square=1e9";
+  const std::string no_other_place = "verify.max_competing_place_ratio=1e9";
   return {{"nothing", {}},
           {"inliers: 7 are enough", {"verify.min_inliers=7", "verify.min_matches=7"}},
           {"spread", {"verify.min_spread_ratio=0"}},
           {"depths agree, where both views have some",
-           {"verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}},
+           {"verify.max_pose_difference_m=100", "verify.max_pose_difference_rad=3.2"}},
           {"odometry gate", {no_odometry}},
           {"rival: the last loop", {no_rival}},
           {"rival: another place for the same view", {no_other_place}},
@@ -40,7 +40,7 @@ std::vector<Variant> variants() {
           {"odometry gate and both rivals", {no_odometry, no_rival, no_other_place}},
           {"all but inliers",
            {no_odometry, no_rival, no_other_place, "verify.min_spread_ratio=0",
-            "verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}}};
+            "verify.max_pose_difference_m=100", "verify.max_pose_difference_rad=3.2"}}};
 }
 
 struct Counts {

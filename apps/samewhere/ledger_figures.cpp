@@ -54,7 +54,7 @@ void add_geometry(const std::optional<core::GeometryEvidence>& geometry,
     figures.add("distance of the poses of both views", "one view gives no pose");
   } else {
     figures.add("distance of the poses of both views", apart_m, " m",
-                at_most(config.max_disagreement_m));
+                at_most(config.max_pose_difference_m));
   }
 }
 
@@ -68,11 +68,12 @@ void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
 }
 
 std::string text_of(const core::RivalEvidence& rival, const verify::Config& config) {
-  std::string text =
-      fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}", rival.frame.index(),
-                  rival.apart_m, rival.mahalanobis_squared, at_most(config.max_rival_chi_square));
+  std::string text = fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}",
+                                 rival.frame.index(), rival.apart_m, rival.mahalanobis_squared,
+                                 at_most(config.max_competing_chi_square));
   if (rival.gain) {
-    text += fmt::format("; likelihood gain {:.4g}{}", *rival.gain, at_least(config.min_rival_gain));
+    text +=
+        fmt::format("; likelihood gain {:.4g}{}", *rival.gain, at_least(config.min_competing_gain));
   }
   return text;
 }
@@ -80,7 +81,7 @@ std::string text_of(const core::RivalEvidence& rival, const verify::Config& conf
 std::string text_of(const core::OtherPlaceEvidence& other, const verify::Config& config) {
   return fmt::format("frame {}, {:.2f} m away, {} inliers (at most {:.0f} % of those here)",
                      other.frame.index(), other.apart_m, other.num_inliers,
-                     100.0 * config.max_other_place_ratio);
+                     100.0 * config.max_competing_place_ratio);
 }
 
 std::string text_of(const core::SequenceEvidence& sequence, const verify::Config& config) {

@@ -10,7 +10,8 @@ namespace samewhere::map {
 // - Landmarks of the keyframe `cull_after_keyframes` before the newest, if too few of the keyframes
 //   since then in which they should be visible observe them, or if a single observation without
 //   depth is left.
-// - Landmarks of the keyframe `forget_after_keyframes` before the newest that no second keyframe
+// - Landmarks of the keyframe `cull_unmatched_after_keyframes` before the newest that no second
+// keyframe
 //   observed: most points of a cluttered view are never matched again, and a map that kept them all
 //   would grow without bound.
 // - At most one keyframe: that of the newest one's neighbours of whose landmarks three others see

@@ -38,18 +38,15 @@ std::optional<double> first_stamp_s(const scene::MapVersion& map, std::uint16_t 
   return first_s;
 }
 
-// A camera that stays in one room sees it all again within minutes; shorter recordings are as if
-// there were no such rule.
-constexpr double kKnownAfter_s = 120.0;
-constexpr int kMinKnown = 75;  // landmarks: by so many a pose is sure
-
-// Whether the map has known what the view shows for so long that one more keyframe says nothing
-// new: of the landmarks that it shows most, and enough, were seen by two keyframes, one of them
-// before that. Stamps of an earlier session do not compare: it counts as the begin of this one.
-bool is_long_known(const scene::MapVersion& map, const TrackedView& tracked) {
+// Whether most landmarks of the view, and enough, were observed by two keyframes, one of them more
+// than `known_after_s` ago: another keyframe adds no information. A camera that stays in one room
+// observes it anew within minutes; shorter recordings are not affected. Stamps of an earlier
+// session do not compare: its keyframes count as older.
+bool is_of_known_place(const scene::MapVersion& map, const TrackedView& tracked,
+                       const Config& config) {
   const std::uint16_t session = tracked.view.frame.session();
   const auto session_begin_s = first_stamp_s(map, session);
-  const double latest_s = tracked.view.stamp_s - kKnownAfter_s;
+  const double latest_s = tracked.view.stamp_s - config.known_after_s;
   if (!session_begin_s || *session_begin_s > latest_s) return false;
   const auto is_old = [&](const scene::Observation& o) {
     const features::View& view = map.at(o.keyframe).view;
@@ -62,7 +59,7 @@ bool is_long_known(const scene::MapVersion& map, const TrackedView& tracked) {
                std::any_of(observations.begin(), observations.end(), is_old);
       }));
   const auto num_tracked = static_cast<int>(tracked.landmarks.size());
-  return num_known >= kMinKnown && 2 * num_known > num_tracked;
+  return num_known >= config.min_known_landmarks && 2 * num_known > num_tracked;
 }
 
 // A landmark at feature `slot` of a new keyframe; nothing where depth is unknown.
@@ -162,7 +159,7 @@ bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
   const auto num_tracked = static_cast<int>(tracked.landmarks.size());
   const bool has_lost_sight = num_tracked < min_tracked_ratio * num_in_reference;
   const bool shows_new = is_far || is_turned || has_lost_sight || num_tracked < config.min_tracked;
-  return shows_new && !is_long_known(map, tracked);
+  return shows_new && !is_of_known_place(map, tracked, config);
 }
 
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,

@@ -82,7 +82,7 @@ std::vector<core::Candidate> best_of_places(const std::vector<core::Candidate>& 
       firsts.push_back(next);
       num_views.push_back(0);
     }
-    if (num_views[index]++ < config.views_of_place) best.push_back(next);
+    if (num_views[index]++ < config.views_per_place) best.push_back(next);
   }
   return best;
 }
@@ -163,7 +163,7 @@ std::vector<core::LedgerRow> LoopDetector::judge(const core::Descriptor& descrip
 void LoopDetector::look_around(const core::Descriptor& descriptor, const features::View& view,
                                const MapKnowledge& map, std::vector<core::LedgerRow>& rows) {
   const verify::Config& config = settings_.verify;
-  if (config.look_around_frames == 0) return;
+  if (config.neighbour_frames == 0) return;
   units_.emplace(descriptor.frame, descriptor.unit);
   const core::LedgerRow* found = best_of_query(rows, config);
   if (found == nullptr) return;
@@ -180,7 +180,7 @@ void LoopDetector::look_around(const core::Descriptor& descriptor, const feature
     if (is_better) best = both.back();
     return is_better;
   };
-  for (int step = config.look_around_frames; step > 0;) {
+  for (int step = config.neighbour_frames; step > 0;) {
     if (!shows_more(-step) && !shows_more(step)) step /= 2;
   }
 }
@@ -233,7 +233,7 @@ void LoopDetector::hold_against_each_other(const MapKnowledge& map,
 
 void LoopDetector::wait_or_pause(const core::LedgerRow& row) {
   const core::Candidate& candidate = row.candidate;
-  if (may_need_sequences(settings_.verify) || settings_.verify.look_around_frames > 0)
+  if (may_need_sequences(settings_.verify) || settings_.verify.neighbour_frames > 0)
     was_judged_.insert({candidate.query, candidate.match});
   if (core::is_loop(row.verdict))
     history_.last_loop_query = std::max(history_.last_loop_query, std::optional(candidate.query));

@@ -123,7 +123,7 @@ std::vector<std::uint64_t> matches_of_places(const retrieve::Config& retrieve,
 TEST(LoopDetector, CandidatesAreTheBestViewsOfDifferentPlaces) {
   const auto nobody = [](core::FrameId /*match*/) { return false; };
   EXPECT_EQ(matches_of_places({.shortlist = 30}, nobody), (std::vector<std::uint64_t>{0, 10, 20}));
-  EXPECT_EQ(matches_of_places({.num_candidates = 2, .shortlist = 30, .views_of_place = 2}, nobody),
+  EXPECT_EQ(matches_of_places({.num_candidates = 2, .shortlist = 30, .views_per_place = 2}, nobody),
             (std::vector<std::uint64_t>{0, 1, 10, 11}));
   EXPECT_EQ(matches_of_places({.shortlist = 0}, nobody), (std::vector<std::uint64_t>{0, 1, 2}));
 }
@@ -189,9 +189,9 @@ TEST_F(TwoPlaces, OfWhichOneShowsFarMoreAreThatOne) {
 // `seen_again` has shown.
 class TurnAround {
  public:
-  explicit TurnAround(int look_around_frames) {
+  explicit TurnAround(int neighbour_frames) {
     config_.retrieve.window_frames = 40;
-    config_.verify.look_around_frames = look_around_frames;
+    config_.verify.neighbour_frames = neighbour_frames;
   }
 
   // All that is judged of frame `query`, if the search finds `found`.

@@ -71,8 +71,8 @@ std::vector<FoundView> Retriever::search_places(const core::Descriptor& descript
                                                 const cv::Mat& features) const {
   check(descriptor);
   Config lost = config_;
-  lost.num_candidates = lost.word_candidates = config_.lost_candidates;
-  lost.place_frames = config_.lost_place_frames;
+  lost.num_candidates = lost.word_candidates = config_.relocalization_candidates;
+  lost.place_frames = config_.relocalization_place_frames;
   constexpr int kNoWindow = 0;
   const int num_allowed = store_.num_older(descriptor.frame, kNoWindow);
   return found_by(descriptor, features, num_allowed, lost);

@@ -48,7 +48,8 @@ class Retriever {
   std::vector<FoundView> search(const core::Descriptor& descriptor,
                                 const cv::Mat& features = {}) const;
   // For relocalization: no window, since the camera may be where it was a moment ago;
-  // lost_candidates of either kind, of different places by lost_place_frames.
+  // relocalization_candidates of either kind, of different places by
+  // relocalization_place_frames.
   std::vector<FoundView> search_places(const core::Descriptor& descriptor,
                                        const cv::Mat& features = {}) const;
   // For a map that groups views by common landmarks: so many more of either kind that search()

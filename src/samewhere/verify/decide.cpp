@@ -28,7 +28,7 @@ std::optional<Rejection> check_agreement(const Candidate& candidate, const Evide
                                          const Config& config) {
   const double apart_m = evidence.geometry->disagreement_m.value_or(0.0);
   const double apart_rad = evidence.geometry->disagreement_rad.value_or(0.0);
-  if (apart_m <= config.max_disagreement_m && apart_rad <= config.max_disagreement_rad) {
+  if (apart_m <= config.max_pose_difference_m && apart_rad <= config.max_pose_difference_rad) {
     return std::nullopt;
   }
   if (!std::isfinite(apart_m)) {
@@ -96,8 +96,8 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
 
 // Odometry can tell.
 bool overrules(const core::RivalEvidence& rival, const Config& config) {
-  return rival.mahalanobis_squared > config.max_rival_chi_square && rival.gain &&
-         *rival.gain >= config.min_rival_gain;
+  return rival.mahalanobis_squared > config.max_competing_chi_square && rival.gain &&
+         *rival.gain >= config.min_competing_gain;
 }
 
 // Two places that explain the view: nobody can tell which.
@@ -105,7 +105,7 @@ std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evide
                                          const Config& config) {
   if (!evidence.rival) return std::nullopt;
   const core::RivalEvidence& rival = *evidence.rival;
-  if (rival.mahalanobis_squared <= config.max_rival_chi_square || overrules(rival, config))
+  if (rival.mahalanobis_squared <= config.max_competing_chi_square || overrules(rival, config))
     return std::nullopt;
   return core::Ambiguous{
       candidate.id, evidence, Refusal::kRival,
@@ -114,7 +114,7 @@ std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evide
           "degrees from here, more than odometry can have drifted since (chi-square {:.0f}, "
           "at most {:.0f})",
           rival.frame.index(), rival.apart_m, rival.apart_rad * kDegrees, rival.mahalanobis_squared,
-          config.max_rival_chi_square)};
+          config.max_competing_chi_square)};
 }
 
 // Two places that explain the view about as well.
@@ -125,13 +125,13 @@ std::optional<core::Verdict> check_other_place(const Candidate& candidate, const
   if (evidence.rival && overrules(*evidence.rival, config)) return std::nullopt;
   const core::OtherPlaceEvidence& other = *evidence.other_place;
   const int num_inliers = evidence.geometry->num_inliers;
-  if (other.num_inliers <= config.max_other_place_ratio * num_inliers) return std::nullopt;
+  if (other.num_inliers <= config.max_competing_place_ratio * num_inliers) return std::nullopt;
   return core::Ambiguous{
       candidate.id, evidence, Refusal::kRival,
       fmt::format("frame {} shows another place, {:.2f} m and {:.1f} degrees from here, with which "
                   "{} features agree; at most {:.0f} % of the {} that agree here",
                   other.frame.index(), other.apart_m, other.apart_rad * kDegrees, other.num_inliers,
-                  100.0 * config.max_other_place_ratio, num_inliers)};
+                  100.0 * config.max_competing_place_ratio, num_inliers)};
 }
 
 // Not a loop yet, or never.

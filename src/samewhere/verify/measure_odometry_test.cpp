@@ -170,7 +170,7 @@ TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
   };
   EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
   EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
-  EXPECT_GT(after(2, 1.8).mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_GT(after(2, 1.8).mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_LT(after(2, 0.05).mahalanobis_squared, 1.0) << "one place, and a better pose";
   EXPECT_LT(after(55, 1.8).mahalanobis_squared, after(2, 1.8).mahalanobis_squared / 5.0);
 }
@@ -239,7 +239,7 @@ TEST(MeasureRival, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
   EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), {}, {})->gain);
   const auto beyond = measure_rival(map, sideways(map, 24, 8.0), {}, {});
-  EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_FALSE(beyond->gain);
 }
 
@@ -251,7 +251,7 @@ TEST(MeasureRival, WithoutDepthNothingIsCompared) {
   map = apply(map, edit);
   const auto rival = measure_rival(map, sideways(map, 22, 1.8), {}, {});
   ASSERT_TRUE(rival);
-  EXPECT_GT(rival->mahalanobis_squared, Config{}.max_rival_chi_square);
+  EXPECT_GT(rival->mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_FALSE(rival->gain);
 }
 

@@ -89,7 +89,7 @@ Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEd
     if (loop == loop_of.end()) continue;
     const double chi2 = odometry.fit(claim, to_claim.chain()).chi2;
     const bool is_with_claim =
-        chi2 <= config.max_rival_chi_square &&
+        chi2 <= config.max_competing_chi_square &&
         (found.first == nullptr || chi2 <= odometry.fit(*found.first, to_first.chain()).chi2);
     if (is_with_claim) {
       found.base = at;
@@ -123,7 +123,7 @@ void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, co
 // Without depth, loops have stretched what odometry measured.
 bool may_compare(const scene::MapVersion& map, const scene::LoopEdge& claim,
                  const core::RivalEvidence& rival, const Config& config) {
-  return rival.mahalanobis_squared > config.max_rival_chi_square && !is_without_depth(map) &&
+  return rival.mahalanobis_squared > config.max_competing_chi_square && !is_without_depth(map) &&
          measure_odometry(map, claim, {}, config).mahalanobis_squared <=
              config.max_odometry_chi_square;
 }
@@ -169,7 +169,8 @@ std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVers
                    {.creep = scale.creep, .loop = std::sqrt(2.0) * scale.loop});
   const core::Vector6d error = difference(known.a_from_b, rigid_part(other_from_claim));
   const core::Matrix6d covariance = known.covariance + claimed.covariance;
-  if (error.dot(covariance.llt().solve(error)) <= config.max_rival_chi_square) return std::nullopt;
+  if (error.dot(covariance.llt().solve(error)) <= config.max_competing_chi_square)
+    return std::nullopt;
   const core::Rigid3 apart = inverse(world_from_body(map, claim.match) * claim.match_from_query) *
                              (world_from_body(map, other.match) * other.match_from_query);
   return core::OtherPlaceEvidence{.frame = map.at(other.match).view.frame,

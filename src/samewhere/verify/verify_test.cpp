@@ -138,10 +138,10 @@ TEST(Decide, EachCheckRefusesUnderItsOwnName) {
   evidence.geometry->spread_ratio = 0.5 * config.min_spread_ratio;
   EXPECT_EQ(stage(evidence, config), "spread");
   evidence = good_evidence();
-  evidence.geometry->disagreement_m = 2.0 * config.max_disagreement_m;
+  evidence.geometry->disagreement_m = 2.0 * config.max_pose_difference_m;
   EXPECT_EQ(stage(evidence, config), "agreement");
   evidence = good_evidence();
-  evidence.geometry->disagreement_rad = 2.0 * config.max_disagreement_rad;
+  evidence.geometry->disagreement_rad = 2.0 * config.max_pose_difference_rad;
   EXPECT_EQ(stage(evidence, config), "agreement");
   evidence = good_evidence();
   evidence.odometry->mahalanobis_squared = 2.0 * config.max_odometry_chi_square;
@@ -260,9 +260,9 @@ TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
   evidence.rival = core::RivalEvidence{.frame = core::FrameId(20),
                                        .mahalanobis_squared = 31.0,
                                        .first_loop = core::CandidateId(7),
-                                       .gain = Config{}.min_rival_gain - 0.1};
+                                       .gain = Config{}.min_competing_gain - 0.1};
   EXPECT_EQ(stage(evidence, {}), "rival");
-  evidence.rival->gain = Config{}.min_rival_gain + 0.1;
+  evidence.rival->gain = Config{}.min_competing_gain + 0.1;
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   ASSERT_TRUE(core::is_loop(verdict));
   EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));
@@ -293,7 +293,7 @@ TEST(Decide, AnotherPlaceThatGoesWithOverruledLoopsDoesNotCount) {
   evidence.rival = core::RivalEvidence{.frame = core::FrameId(20),
                                        .mahalanobis_squared = 31.0,
                                        .first_loop = core::CandidateId(7),
-                                       .gain = Config{}.min_rival_gain + 0.1};
+                                       .gain = Config{}.min_competing_gain + 0.1};
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   ASSERT_TRUE(core::is_loop(verdict));
   EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));

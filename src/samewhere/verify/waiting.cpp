@@ -24,11 +24,11 @@ ViewPair views_of(const core::Evidence& evidence) {
 }  // namespace
 
 Waiting::Waiting(const Config& config) : config_(config) {
-  if (config.min_views > config.wait_views + 1) {
+  if (config.min_views > config.max_pending_views + 1) {
     throw core::InputError(
         fmt::format("verify.min_views is {}; expected at most {}, for nobody waits longer than "
-                    "verify.wait_views {}",
-                    config.min_views, config.wait_views + 1, config.wait_views));
+                    "verify.max_pending_views {}",
+                    config.min_views, config.max_pending_views + 1, config.max_pending_views));
   }
 }
 
@@ -73,9 +73,9 @@ void Waiting::add_next(const ViewPair& end, int query, int step, std::vector<Vie
 }
 
 std::vector<core::LedgerRow> Waiting::settle(int view) {
-  std::vector<core::LedgerRow> rows = settle_until(view - config_.wait_views);
-  // whoever still waits may hang on what came wait_views before it
-  first_kept_ = std::max(first_kept_, view - 2 * config_.wait_views);
+  std::vector<core::LedgerRow> rows = settle_until(view - config_.max_pending_views);
+  // whoever still waits may hang on what came max_pending_views before it
+  first_kept_ = std::max(first_kept_, view - 2 * config_.max_pending_views);
   const ViewPair first{first_kept_, std::numeric_limits<int>::min()};
   claims_.erase(claims_.begin(), claims_.lower_bound(first));
   foretold_.erase(foretold_.begin(), foretold_.lower_bound(first));

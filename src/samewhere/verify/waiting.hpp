@@ -24,7 +24,7 @@ class Waiting {
   std::vector<ViewPair> foretold(int query_view);
 
   // Further verdicts on those that can be decided now that view `view` was seen, by query: a
-  // sequence long enough holds them, or they have waited for wait_views in vain.
+  // sequence long enough holds them, or they have waited for max_pending_views in vain.
   std::vector<core::LedgerRow> settle(int view);
   // Nothing comes any more.
   std::vector<core::LedgerRow> settle_all();

@@ -15,7 +15,7 @@ Config few_views() {
   Config config;
   config.require_pose = false;
   config.min_views = 4;
-  config.wait_views = 6;
+  config.max_pending_views = 6;
   return config;
 }
 
@@ -130,7 +130,7 @@ TEST(Waiting, ALongSequenceIsNotAskedForItsBeginningForEver) {
 
 TEST(Waiting, NobodyWaitsLongerThanHeMay) {
   Config config = few_views();
-  config.min_views = config.wait_views + 1;
+  config.min_views = config.max_pending_views + 1;
   EXPECT_NO_THROW(Waiting{config});
   ++config.min_views;
   EXPECT_THROW(Waiting{config}, core::InputError);
