@@ -85,13 +85,13 @@ void add(const core::Ledger& ledger, const core::Truth& truth, double window_s, 
   pipeline::SlamFindings findings;
   pipeline::add_loops(ledger, stamp_of, findings);
   const evaluate::LoopCheck check = evaluate::check_loops(findings.loops, truth);
-  counts.num_right += check.num_right;
-  counts.num_wrong += check.num_wrong;
+  counts.num_right += check.num_true;
+  counts.num_wrong += check.num_false;
   counts.num_unknown += check.num_unknown;
   counts.num_revisits += check.num_revisits;
   counts.num_closed += check.num_closed;
   for (const evaluate::CheckedLoop& checked : check.loops) {
-    const bool is_wrong = checked.truth == evaluate::LoopTruth::kWrong;
+    const bool is_wrong = checked.truth == evaluate::LoopTruth::kFalse;
     if (is_wrong && !was_seen_before(truth, checked.loop.query, window_s)) ++counts.num_first;
   }
 }

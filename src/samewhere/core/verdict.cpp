@@ -78,16 +78,15 @@ std::string reason_for(const LoopClosure& loop) {
   const Evidence& evidence = loop.evidence;
   std::string reason = loop.is_by_hand ? "accepted by hand: " : "";
   if (!evidence.geometry) return reason + fmt::format("similarity {:.3f}", evidence.similarity);
-  reason += fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
+  reason += fmt::format("{} inliers of one geometry, reprojection error {:.2f} px",
                         evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
   if (evidence.sequence)
-    reason += fmt::format("; {} views in a row go on to match", evidence.sequence->num_views);
+    reason += fmt::format("; {} consecutive views match", evidence.sequence->num_views);
   if (loop.overruled.is_valid() && evidence.competing_loop && evidence.competing_loop->gain)
     reason += fmt::format(
-        "; the last loop has put the camera where frame {} was taken, {:.2f} m from here, but "
-        "odometry speaks against the first that says so (gain {:.1f})",
-        evidence.competing_loop->frame.index(), evidence.competing_loop->apart_m,
-        *evidence.competing_loop->gain);
+        "; replaces the competing hypothesis of the last loop, the place of frame {} at {:.2f} m: "
+        "odometry supports this loop rather than its first one (gain {:.1f})",
+        evidence.competing_loop->frame.index(), evidence.competing_loop->apart_m, *evidence.competing_loop->gain);
   return reason;
 }
 

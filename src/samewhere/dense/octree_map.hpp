@@ -11,8 +11,8 @@
 
 namespace samewhere::dense {
 
-// What of space is free, what is occupied, what was never seen: the OctoMap of Hornung et al.
-// (Autonomous Robots 2013), by its library.
+// Free, occupied and unknown space in 3D: the OctoMap of Hornung et al. (Autonomous Robots 2013),
+// by its library.
 class OctreeMap {
  public:
   explicit OctreeMap(const Config& config);

@@ -4,20 +4,20 @@
 
 namespace samewhere::evaluate {
 
-// How well a score tells pairs of one place from pairs that only look alike.
+// Separation of true and false pairs by a score.
 struct Separation {
   int num_true = 0;
   int num_wrong = 0;
-  // The chance that a true pair scores above a wrong one, a tie counting half (area under the ROC
-  // curve; Mann and Whitney 1947). 0.5 if there are no pairs of one kind.
+  // Probability that a true pair scores above a false one, ties counting half (area under the ROC
+  // curve; Mann and Whitney 1947). 0.5 if either kind is missing.
   double auc = 0.5;
-  // Share of the true pairs above a threshold that so large a share of the wrong ones pass at most;
-  // of fewer than 1,000 wrong pairs the second is of a threshold that none passes.
+  // True positive rate at a false positive rate of 1 % and of 0.1 %; with fewer than 1,000 false
+  // pairs the latter is the rate without any false positive.
   double kept_at_1_percent = 0.0;
   double kept_at_0_1_percent = 0.0;
 };
 
-// Higher scores speak for one place. None may be NaN.
+// Higher scores mean the same place. None may be NaN.
 Separation separation_of(std::vector<double> true_scores, std::vector<double> wrong_scores);
 
 }  // namespace samewhere::evaluate

@@ -18,8 +18,8 @@ double median_depth_m(const features::View& view) {
   return core::median(std::move(depths)).value_or(0.0F);
 }
 
-// Landmarks that a second keyframe shows too. What only one has shown may never be found again: it
-// says nothing of how much of the reference is still in sight. Of the first keyframe all.
+// Landmarks that a second keyframe observes too. Those of one keyframe may never be matched again
+// and do not tell how much of the reference is still visible. Of the first keyframe all.
 int num_proven_landmarks(const scene::MapVersion& map, const scene::Keyframe& keyframe) {
   const std::size_t min_observations = map.keyframes.size() > 2 ? 2 : 1;
   return static_cast<int>(

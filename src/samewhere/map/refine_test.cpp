@@ -250,7 +250,7 @@ bool is_of_second_fifth(const scene::MapVersion& map, core::LandmarkId id) {
   return map.at(id).anchor == core::KeyframeId(1) && id.index() % 5 == 0;
 }
 
-TEST(Cull, ALandmarkThatNobodyFindsAgainGoes) {
+TEST(Cull, ALandmarkThatIsNeverMatchedAgainIsCulled) {
   const features::TestWorld world = features::test_world(5, 2000);
   scene::MapVersion map = test_map(world, 2);
   const auto is_lost = [&](core::LandmarkId id) { return is_of_second_fifth(map, id); };
@@ -312,7 +312,7 @@ std::pair<std::size_t, std::size_t> size_after_swaying(int num_views, const Conf
 }
 
 // Nothing is blamed for not being found: that would hide what forgetting does.
-TEST(Cull, WhoStaysWhereHeIsHasAMapThatHardlyGrows) {
+TEST(Cull, TheMapOfAStationaryCameraHardlyGrows) {
   const Config config{.min_found_ratio = 0.0};
   const auto [num_keyframes, num_landmarks] = size_after_swaying(20, config);
   const auto [num_later, num_landmarks_later] = size_after_swaying(60, config);

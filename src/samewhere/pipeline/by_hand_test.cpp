@@ -114,7 +114,7 @@ TEST_F(ByHandInRooms, WhatCannotBeForcedSaysWhy) {
   EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop already"));
   core::LedgerRow lost = row;
   lost.candidate.origin = core::Origin::kRelocalization;
-  EXPECT_THAT(why_not_forced(lost), HasSubstr("nobody knew where"));
+  EXPECT_THAT(why_not_forced(lost), HasSubstr("is a relocalization candidate"));
   core::LedgerRow unmeasured = row;
   unmeasured.verdict = core::Rejection{row.candidate.id, {}, core::Refusal::kPause, "too soon"};
   EXPECT_THAT(why_not_forced(unmeasured), HasSubstr("no relative pose (too soon)"));

@@ -25,7 +25,7 @@ std::uint64_t index_of(const Json& json) {
       fmt::format("found {}, expected the number of a frame or candidate", json.dump()));
 }
 
-// One entry of the file. What is wrong with it comes out as a Json exception.
+// One entry of the file. Throws a Json exception on a malformed one.
 class Entry {
  public:
   Entry(const Json& json, std::size_t position) : json_(json), scores_(json.at("scores")) {
@@ -210,8 +210,8 @@ class EntrySize {
   int num_values_ = 0;
 };
 
-// Reads loops.json entry by entry: the document is never in memory as a whole, nor is what does not
-// belong into it.
+// Reads loops.json entry by entry: the document is never in memory as a whole, nor are foreign
+// keys.
 class Document {
  public:
   core::Ledger read(const std::string& text) && {
