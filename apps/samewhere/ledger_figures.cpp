@@ -68,9 +68,9 @@ void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
 }
 
 std::string text_of(const core::CompetingLoopEvidence& loop, const verify::Config& config) {
-  std::string text = fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}",
-                                 loop.frame.index(), loop.apart_m, loop.mahalanobis_squared,
-                                 at_most(config.max_competing_chi_square));
+  std::string text =
+      fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}", loop.frame.index(), loop.apart_m,
+                  loop.mahalanobis_squared, at_most(config.max_competing_chi_square));
   if (loop.gain) {
     text +=
         fmt::format("; likelihood gain {:.4g}{}", *loop.gain, at_least(config.min_competing_gain));

@@ -86,7 +86,8 @@ std::string reason_for(const LoopClosure& loop) {
     reason += fmt::format(
         "; replaces the competing hypothesis of the last loop, the place of frame {} at {:.2f} m: "
         "odometry supports this loop rather than its first one (gain {:.1f})",
-        evidence.competing_loop->frame.index(), evidence.competing_loop->apart_m, *evidence.competing_loop->gain);
+        evidence.competing_loop->frame.index(), evidence.competing_loop->apart_m,
+        *evidence.competing_loop->gain);
   return reason;
 }
 

@@ -33,10 +33,10 @@ std::optional<Rejection> check_consistency(const Candidate& candidate, const Evi
   }
   if (!std::isfinite(apart_m)) {
     return rejection(candidate, evidence, Refusal::kConsistency,
-                     "only one of the two views finds a relative pose");
+                     "only one of the two views gives a relative pose");
   }
   return rejection(candidate, evidence, Refusal::kConsistency,
-                   fmt::format("the relative poses found from each of the two views differ by "
+                   fmt::format("the relative poses from the depth of each view differ by "
                                "{:.2f} m and {:.1f} degrees",
                                apart_m, apart_rad * kDegrees));
 }
@@ -56,19 +56,18 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
   const bool is_by_itself = !needs_sequence(g, config);
   const int min_inliers = inliers_needed(g, config);
   if (g.num_inliers < min_inliers) {
-    return rejection(candidate, evidence, Refusal::kInliers,
-                     fmt::format("only {} features agree on one geometry, {} needed", g.num_inliers,
-                                 min_inliers));
+    return rejection(
+        candidate, evidence, Refusal::kInliers,
+        fmt::format("only {} inliers of one geometry, {} needed", g.num_inliers, min_inliers));
   }
   if (is_by_itself && g.spread_ratio < config.min_spread_ratio) {
-    return rejection(
-        candidate, evidence, Refusal::kSpread,
-        fmt::format("the features that agree cover {:.0f} % of the picture, {:.0f} % needed",
-                    100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
+    return rejection(candidate, evidence, Refusal::kSpread,
+                     fmt::format("the inliers cover {:.0f} % of the image, {:.0f} % needed",
+                                 100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
   }
   if (config.require_pose && !g.match_from_query) {
     return rejection(candidate, evidence, Refusal::kPose,
-                     "no relative pose: too few of the features that agree have a known depth");
+                     "no relative pose: too few inliers with known depth");
   }
   return check_consistency(candidate, evidence, config);
 }
@@ -77,7 +76,7 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
 std::string scale_drift_text(const Evidence& evidence) {
   const auto& pose = evidence.geometry->match_from_query;
   if (!pose || pose->scale == 1.0) return "";
-  return fmt::format(", and what is 1 long to be {:.2f} long", pose->scale);
+  return fmt::format(" with scale {:.2f}", pose->scale);
 }
 
 std::optional<Rejection> check_odometry(const Candidate& candidate, const Evidence& evidence,
@@ -110,9 +109,8 @@ std::optional<core::Verdict> check_competing_loop(const Candidate& candidate,
   return core::Ambiguous{
       candidate.id, evidence, Refusal::kCompeting,
       fmt::format(
-          "the last loop has put the camera where frame {} was taken, {:.2f} m and {:.1f} "
-          "degrees from here, more than odometry can have drifted since (chi-square {:.0f}, "
-          "at most {:.0f})",
+          "the last loop places the camera at frame {}, {:.2f} m and {:.1f} degrees from here, "
+          "more than odometry can have drifted since (chi-square {:.0f}, at most {:.0f})",
           loop.frame.index(), loop.apart_m, loop.apart_rad * kDegrees, loop.mahalanobis_squared,
           config.max_competing_chi_square)};
 }
@@ -128,10 +126,11 @@ std::optional<core::Verdict> check_competing_place(const Candidate& candidate,
   if (place.num_inliers <= config.max_competing_place_ratio * num_inliers) return std::nullopt;
   return core::Ambiguous{
       candidate.id, evidence, Refusal::kCompeting,
-      fmt::format("frame {} shows another place, {:.2f} m and {:.1f} degrees from here, with which "
-                  "{} features agree; at most {:.0f} % of the {} that agree here",
-                  place.frame.index(), place.apart_m, place.apart_rad * kDegrees, place.num_inliers,
-                  100.0 * config.max_competing_place_ratio, num_inliers)};
+      fmt::format(
+          "frame {} shows another place, {:.2f} m and {:.1f} degrees from here, with {} inliers; "
+          "at most {:.0f} % of the {} here",
+          place.frame.index(), place.apart_m, place.apart_rad * kDegrees, place.num_inliers,
+          100.0 * config.max_competing_place_ratio, num_inliers)};
 }
 
 // Pending, or given up.
@@ -141,13 +140,12 @@ std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Ev
   if (sequence.num_views >= config.min_views) return std::nullopt;
   if (sequence.is_over) {
     return rejection(candidate, evidence, Refusal::kSequence,
-                     fmt::format("only {} views in a row go on to match, {} needed",
-                                 sequence.num_views, config.min_views));
+                     fmt::format("only {} consecutive views match, {} needed", sequence.num_views,
+                                 config.min_views));
   }
-  return core::Ambiguous{
-      candidate.id, evidence, Refusal::kSequence,
-      fmt::format("{} views in a row go on to match so far, {} needed: waits for those that follow",
-                  sequence.num_views, config.min_views)};
+  return core::Ambiguous{candidate.id, evidence, Refusal::kSequence,
+                         fmt::format("{} consecutive views match so far, {} needed: pending",
+                                     sequence.num_views, config.min_views)};
 }
 
 std::optional<core::Verdict> check_other_views(const Candidate& candidate, const Evidence& evidence,

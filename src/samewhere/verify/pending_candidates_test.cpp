@@ -47,7 +47,7 @@ std::vector<std::string> told(const std::vector<core::LedgerRow>& rows) {
 
 using Told = std::vector<std::string>;
 
-TEST(PendingCandidates, AllOfASequenceAreLoopsAsSoonAsItIsLongEnough) {
+TEST(PendingCandidates, AllOfASequenceAreAcceptedOnceItIsLongEnough) {
   PendingCandidates pending(few_views());
   for (int i = 0; i < 3; ++i) {
     add(pending, 50 + i, 10 + i);
@@ -58,11 +58,11 @@ TEST(PendingCandidates, AllOfASequenceAreLoopsAsSoonAsItIsLongEnough) {
   EXPECT_EQ(told(pending.settle(53)),
             (Told{"50-10 LOOP", "51-11 LOOP", "52-12 LOOP", "53-13 LOOP"}));
   add(pending, 54, 14);
-  EXPECT_EQ(told(pending.settle(54)), Told{"54-14 LOOP"}) << "and whoever goes on, at once";
+  EXPECT_EQ(told(pending.settle(54)), Told{"54-14 LOOP"}) << "and its continuation, at once";
   EXPECT_EQ(told(pending.settle_all()), Told{"52-40 NOT"});
 }
 
-TEST(PendingCandidates, WhoWaitsInVainIsRefusedAndTold) {
+TEST(PendingCandidates, ACandidateWithoutASequenceIsRejectedInTheEnd) {
   PendingCandidates pending(few_views());
   add(pending, 50, 10);
   add(pending, 51, 11);
@@ -70,53 +70,53 @@ TEST(PendingCandidates, WhoWaitsInVainIsRefusedAndTold) {
   const auto rows = pending.settle(56);
   EXPECT_EQ(told(rows), Told{"50-10 NOT"});
   EXPECT_EQ(core::stage_of(rows.at(0).verdict), "sequence");
-  EXPECT_EQ(core::reason_of(rows.at(0).verdict), "only 2 views in a row go on to match, 4 needed");
+  EXPECT_EQ(core::reason_of(rows.at(0).verdict), "only 2 consecutive views match, 4 needed");
 }
 
-TEST(PendingCandidates, WhoWasForetoldHangsOnASequenceButProvesNothingOfIt) {
+TEST(PendingCandidates, PredictedCandidatesDoNotLengthenASequence) {
   PendingCandidates pending(few_views());
   for (int i = 0; i < 3; ++i) add(pending, 50 + i, 10 + i);
   add(pending, 53, 13, core::Origin::kPredicted);
   add(pending, 54, 14, core::Origin::kPredicted);
-  EXPECT_TRUE(pending.settle(54).empty()) << "three and two that were looked for on purpose";
+  EXPECT_TRUE(pending.settle(54).empty()) << "three, and two that were predicted";
   add(pending, 55, 15);
   EXPECT_EQ(told(pending.settle(55)), (Told{"50-10 LOOP", "51-11 LOOP", "52-12 LOOP", "53-13 LOOP",
                                             "54-14 LOOP", "55-15 LOOP"}))
-      << "a fourth nobody looked for, over the gap";
+      << "a fourth that was retrieved, over the gap";
   add(pending, 57, 35, core::Origin::kPredicted);
   pending.settle(57);
-  EXPECT_EQ(told(pending.settle_all()), Told{"57-35 NOT"}) << "hangs on nothing";
+  EXPECT_EQ(told(pending.settle_all()), Told{"57-35 NOT"}) << "no sequence";
 }
 
-TEST(PendingCandidates, NorDoesWhoWasFoundByHisFeatures) {
+TEST(PendingCandidates, NorDoCandidatesByVisualWords) {
   PendingCandidates pending(few_views());
   for (int i = 0; i < 3; ++i) add(pending, 50 + i, 10 + i);
   add(pending, 53, 13, core::Origin::kVisualWords);
-  EXPECT_TRUE(pending.settle(53).empty()) << "three that look alike";
+  EXPECT_TRUE(pending.settle(53).empty()) << "three that were retrieved";
   add(pending, 54, 14);
   EXPECT_EQ(told(pending.settle(54)),
             (Told{"50-10 LOOP", "51-11 LOOP", "52-12 LOOP", "53-13 LOOP", "54-14 LOOP"}));
 }
 
-TEST(PendingCandidates, AskedForLaterAnEarlierViewTakesItsPlace) {
+TEST(PendingCandidates, AnEarlierViewThatComesLaterTakesItsPlace) {
   PendingCandidates pending(few_views());
   for (const int i : {1, 2, 3, 0}) add(pending, 50 + i, 10 + i);
   EXPECT_EQ(pending.settle(53).size(), 4u);
 }
 
-TEST(PendingCandidates, ForetellsHowASequenceGoesOnAndHowItBeganOnce) {
+TEST(PendingCandidates, PredictsBothEndsOfASequenceOnce) {
   PendingCandidates pending(few_views());
   add(pending, 50, 10);
-  EXPECT_TRUE(pending.predict(51).empty()) << "one view says nothing";
+  EXPECT_TRUE(pending.predict(51).empty()) << "one view is no sequence";
   add(pending, 51, 11);
   const std::vector<ViewPair> pairs = pending.predict(52);
   ASSERT_GE(pairs.size(), 2u);
   EXPECT_EQ(pairs[0], (ViewPair{52, 12}));
   EXPECT_NE(std::find(pairs.begin(), pairs.end(), ViewPair{49, 9}), pairs.end());
-  EXPECT_TRUE(pending.predict(52).empty()) << "all named already";
+  EXPECT_TRUE(pending.predict(52).empty()) << "each pair once";
 }
 
-TEST(PendingCandidates, ALongSequenceIsNotAskedForItsBeginningForEver) {
+TEST(PendingCandidates, TheBeginningOfALongSequenceIsPredictedOnce) {
   PendingCandidates pending(few_views());
   std::set<ViewPair> named;
   for (int i = 0; i < 60; ++i) {
@@ -127,7 +127,7 @@ TEST(PendingCandidates, ALongSequenceIsNotAskedForItsBeginningForEver) {
   }
 }
 
-TEST(PendingCandidates, NobodyWaitsLongerThanHeMay) {
+TEST(PendingCandidates, MinViewsFitIntoMaxPendingViews) {
   Config config = few_views();
   config.min_views = config.max_pending_views + 1;
   EXPECT_NO_THROW(PendingCandidates{config});
@@ -135,7 +135,7 @@ TEST(PendingCandidates, NobodyWaitsLongerThanHeMay) {
   EXPECT_THROW(PendingCandidates{config}, core::InputError);
 }
 
-TEST(PendingCandidates, ForetellsBackwardsWhereAWalkIsSeenTheOtherWayRound) {
+TEST(PendingCandidates, PredictsBackwardsInTheOppositeDirection) {
   PendingCandidates pending(few_views());
   add(pending, 50, 11);
   add(pending, 51, 10);

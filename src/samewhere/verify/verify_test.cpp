@@ -74,7 +74,7 @@ TEST(MeasureGeometry, BetweenViewsOfTwoScalesItFindsHowMuchLongerOneIs) {
   EXPECT_LT(*evidence.pose_difference_m, 0.03);
 }
 
-TEST(MeasureGeometry, TwoPlacesHaveNothingInCommon) {
+TEST(MeasureGeometry, TwoPlacesHaveFewInliers) {
   const auto evidence =
       measure_geometry(candidate(9, 0), features::test_view(features::test_world(1), 9, {}),
                        features::test_view(features::test_world(2), 0, {}), {});
@@ -126,7 +126,7 @@ TEST(Decide, GoodEvidenceIsALoopWithAPose) {
   EXPECT_TRUE(std::get<core::LoopClosure>(verdict).match_from_query);
 }
 
-TEST(Decide, EachCheckRefusesUnderItsOwnName) {
+TEST(Decide, EachCheckRejectsUnderItsOwnName) {
   const Config config;
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_matches = config.min_matches - 1;
@@ -151,7 +151,7 @@ TEST(Decide, EachCheckRefusesUnderItsOwnName) {
   EXPECT_EQ(stage(evidence, config), "accepted");
 }
 
-TEST(Decide, WhereAMapIsBuiltLooksAloneAreNoLoop) {
+TEST(Decide, WithRequirePoseInliersAloneAreNoLoop) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->match_from_query.reset();
   evidence.odometry.reset();
@@ -159,7 +159,7 @@ TEST(Decide, WhereAMapIsBuiltLooksAloneAreNoLoop) {
   EXPECT_EQ(stage(evidence, {.require_pose = false, .min_views = 1}), "accepted");
 }
 
-TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
+TEST(Decide, WithoutAPoseTheSequenceDecides) {
   const Config alone{.require_pose = false};
   core::Evidence evidence = good_evidence();
   EXPECT_EQ(stage(evidence, alone), "accepted") << "both views find the same pose";
@@ -169,7 +169,7 @@ TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
   evidence.sequence = core::SequenceEvidence{.num_views = alone.min_views - 1};
   const auto waits = decide(candidate(100, 0), evidence, {}, alone);
   EXPECT_EQ(core::name_of(waits), "AMBIGUOUS");
-  EXPECT_NE(core::reason_of(waits).find("9 views in a row go on to match so far, 10 needed"),
+  EXPECT_NE(core::reason_of(waits).find("9 consecutive views match so far, 10 needed"),
             std::string::npos);
   evidence.sequence->is_over = true;
   EXPECT_EQ(stage(evidence, alone), "sequence");
@@ -183,7 +183,7 @@ TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
   EXPECT_EQ(stage(evidence, alone), "inliers");
 }
 
-TEST(Decide, ARefusalSaysWhyInASentenceWithItsFigures) {
+TEST(Decide, ARejectionHasAReasonWithItsMetrics) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_inliers = 17;
   const std::string reason =
@@ -255,7 +255,7 @@ TEST(Rank, OfWhatMayAgreeByChanceNoOverlapIsKnown) {
   EXPECT_GT(rank(chance, config), rank(nearly, config)) << "of equals the more similar";
 }
 
-TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
+TEST(Decide, ALoopOverrulesThoseThatContradictItWithEnoughGain) {
   core::Evidence evidence = good_evidence();
   evidence.competing_loop = core::CompetingLoopEvidence{.frame = core::FrameId(20),
                                                         .mahalanobis_squared = 31.0,
@@ -271,7 +271,7 @@ TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
   EXPECT_FALSE(std::get<core::LoopClosure>(agreeing).overruled.is_valid()) << "nothing contradicts";
 }
 
-TEST(Decide, WhereAnotherPlaceExplainsTheViewAboutAsWellNobodyCanTell) {
+TEST(Decide, ACompetingPlaceWithAboutAsManyInliersIsAmbiguous) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_inliers = 200;
   evidence.competing_place = core::CompetingPlaceEvidence{
@@ -285,7 +285,7 @@ TEST(Decide, WhereAnotherPlaceExplainsTheViewAboutAsWellNobodyCanTell) {
             std::string::npos);
 }
 
-TEST(Decide, AnotherPlaceThatGoesWithOverruledLoopsDoesNotCount) {
+TEST(Decide, ACompetingPlaceThatAgreesWithOverruledLoopsDoesNotCount) {
   core::Evidence evidence = good_evidence();
   evidence.competing_place = core::CompetingPlaceEvidence{
       .frame = core::FrameId(20), .num_inliers = 2 * evidence.geometry->num_inliers};
@@ -299,7 +299,7 @@ TEST(Decide, AnotherPlaceThatGoesWithOverruledLoopsDoesNotCount) {
   EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));
 }
 
-TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
+TEST(Decide, ACompetingLoopFarFromHereIsAmbiguous) {
   core::Evidence evidence = good_evidence();
   evidence.competing_loop = core::CompetingLoopEvidence{
       .frame = core::FrameId(20), .apart_m = 1.8, .apart_rad = 0.01, .mahalanobis_squared = 29.0};
@@ -308,7 +308,7 @@ TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
   EXPECT_EQ(core::stage_of(verdict), "competing");
-  EXPECT_NE(core::reason_of(verdict).find("where frame 20 was taken, 1.80 m"), std::string::npos);
+  EXPECT_NE(core::reason_of(verdict).find("at frame 20, 1.80 m"), std::string::npos);
 }
 
 }  // namespace
