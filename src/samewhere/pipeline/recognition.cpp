@@ -34,7 +34,7 @@ void add_whole_frames(core::Timings& timings) {
 
 void run_in_turn(const NextFrame& next, const RecognitionSteps& steps) {
   while (const std::optional<core::Frame> frame = next()) {
-    steps.judge(steps.search(steps.describe(*frame)));
+    steps.verify(steps.search(steps.describe(*frame)));
   }
 }
 
@@ -48,7 +48,7 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps) {
     return steps.describe(*frame);
   });
   core::StageThread<DescribedFrame, SearchedFrame> searching(described, searched, steps.search);
-  while (const std::optional<SearchedFrame> frame = searched.receive()) steps.judge(*frame);
+  while (const std::optional<SearchedFrame> frame = searched.receive()) steps.verify(*frame);
   describing.join();
   searching.join();
 }
@@ -59,7 +59,7 @@ Recognition::Recognition(const Config& config)
 RecognitionSteps Recognition::steps() {
   return {.describe = [this](const core::Frame& frame) { return describe(frame); },
           .search = [this](DescribedFrame frame) { return search(std::move(frame)); },
-          .judge = [this](const SearchedFrame& frame) { judge(frame); }};
+          .verify = [this](const SearchedFrame& frame) { verify(frame); }};
 }
 
 DescribedFrame Recognition::describe(const core::Frame& frame) {
@@ -81,14 +81,14 @@ SearchedFrame Recognition::search(DescribedFrame described) {
   return searched;
 }
 
-void Recognition::judge(const SearchedFrame& searched) {
+void Recognition::verify(const SearchedFrame& searched) {
   const auto& [descriptor, view, thumbnail] = searched.described;
   std::vector<core::Candidate> candidates;
   {
-    const core::ScopedTimer timer(judge_timings_, "exact similarity");
+    const core::ScopedTimer timer(verify_timings_, "exact similarity");
     candidates = retrieve::compare(descriptor, searched.found);
   }
-  const core::ScopedTimer timer(judge_timings_, "verify");
+  const core::ScopedTimer timer(verify_timings_, "verify");
   found_.record.thumbnails[view.frame] = thumbnail;
   keep(detector_.verify(descriptor, candidates, view, verify::WithoutMap()));
 }
@@ -114,7 +114,7 @@ void Recognition::report_to(RunOutcome& outcome) && {
   keep(detector_.settle_all());
   find_best_of_queries();
   core::Timings timings;
-  for (const core::Timings* step : {&describe_timings_, &search_timings_, &judge_timings_}) {
+  for (const core::Timings* step : {&describe_timings_, &search_timings_, &verify_timings_}) {
     timings.add(*step);
   }
   add_whole_frames(timings);

@@ -57,7 +57,7 @@ class Slam {
 
   // From here on: after finish().
   const scene::MapVersion& map() const;
-  // The judge's rows, and behind them what the pose graph made of them later.
+  // The rows of the loop verifier, and behind them the later ones of the pose graph.
   const core::Ledger& ledger() const;
   // What the views that loops are looked for among look like, oldest first.
   std::vector<core::Descriptor> descriptors() const;
