@@ -26,13 +26,13 @@ struct Variant {
 
 std::vector<Variant> variants() {
   const std::string no_odometry = "verify.max_odometry_chi_square=1e9";
-  const std::string no_rival = "verify.max_rival_chi_square=1e9";
-  const std::string no_other_place = "verify.max_other_place_ratio=1e9";
+  const std::string no_rival = "verify.max_competing_chi_square=1e9";
+  const std::string no_other_place = "verify.max_competing_place_ratio=1e9";
   return {{"nothing", {}},
           {"inliers: 7 are enough", {"verify.min_inliers=7", "verify.min_matches=7"}},
           {"spread", {"verify.min_spread_ratio=0"}},
           {"depths agree, where both views have some",
-           {"verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}},
+           {"verify.max_pose_difference_m=100", "verify.max_pose_difference_rad=3.2"}},
           {"odometry gate", {no_odometry}},
           {"rival: the last loop", {no_rival}},
           {"rival: another place for the same view", {no_other_place}},
@@ -40,7 +40,7 @@ std::vector<Variant> variants() {
           {"odometry gate and both rivals", {no_odometry, no_rival, no_other_place}},
           {"all but inliers",
            {no_odometry, no_rival, no_other_place, "verify.min_spread_ratio=0",
-            "verify.max_disagreement_m=100", "verify.max_disagreement_rad=3.2"}}};
+            "verify.max_pose_difference_m=100", "verify.max_pose_difference_rad=3.2"}}};
 }
 
 struct Counts {
@@ -85,13 +85,13 @@ void add(const core::Ledger& ledger, const core::Truth& truth, double window_s, 
   run::SlamFindings findings;
   run::add_loops(ledger, stamp_of, findings);
   const evaluate::LoopCheck check = evaluate::check_loops(findings.loops, truth);
-  counts.num_right += check.num_right;
-  counts.num_wrong += check.num_wrong;
+  counts.num_right += check.num_true;
+  counts.num_wrong += check.num_false;
   counts.num_unknown += check.num_unknown;
   counts.num_revisits += check.num_revisits;
   counts.num_closed += check.num_closed;
   for (const evaluate::CheckedLoop& checked : check.loops) {
-    const bool is_wrong = checked.truth == evaluate::LoopTruth::kWrong;
+    const bool is_wrong = checked.truth == evaluate::LoopTruth::kFalse;
     if (is_wrong && !was_seen_before(truth, checked.loop.query, window_s)) ++counts.num_first;
   }
 }

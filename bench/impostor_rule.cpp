@@ -27,7 +27,7 @@ using Pairs = std::set<std::pair<int, int>>;  // either frame first
 // The impostors that the truth names, by either frame; empty where it has no such list.
 Pairs listed_impostors(const core::Truth& truth) {
   Pairs pairs;
-  for (const core::FramePair& pair : truth.impostors) {
+  for (const core::FramePair& pair : truth.aliased_pairs) {
     pairs.emplace(pair.query, pair.match);
     pairs.emplace(pair.match, pair.query);
   }

@@ -33,7 +33,7 @@ struct KnownFrames {
 // The rules that a source's own truth allows; queries are at least `query_step` frames apart:
 // * "other places": every frame but those whose place is the same or near (protocol pr-v2, either
 //   way round) and those within 10 s of the query;
-// * "listed impostors": of the pairs that truth.impostors names, by either frame, nothing else;
+// * "listed impostors": of the pairs that truth.aliased_pairs names, by either frame, nothing else;
 //   only where the truth has such a list.
 // Throws InputError if the truth says nothing about places.
 std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_step);

@@ -84,7 +84,7 @@ bool was_seen_before(const core::PlaceTruthMatrix& places, int query, int num_fr
 // Frames of which the first `num_frames` show a look-alike, but nothing of the place.
 std::vector<int> first_lookalikes(const Walk& walk, int num_frames) {
   std::vector<int> found;
-  for (const core::FramePair& pair : walk.truth.impostors) {
+  for (const core::FramePair& pair : walk.truth.aliased_pairs) {
     const bool is_new = found.empty() || found.back() != pair.query;
     if (is_new && pair.match < num_frames && pair.query >= num_frames &&
         !was_seen_before(*walk.truth.places, pair.query, num_frames)) {

@@ -144,7 +144,7 @@ TEST(ImpostorRule, TheOwnPlaceAndMomentAreTakenOut) {
 
 TEST(ImpostorRule, ListedImpostorsAreOfferedToBothFramesAndNothingElseIs) {
   KnownFrames frames;
-  frames.truth.impostors = {{.query = 3, .match = 1}, {.query = 9, .match = 4}};
+  frames.truth.aliased_pairs = {{.query = 3, .match = 1}, {.query = 9, .match = 4}};
   const std::vector<ImpostorRule> rules = rules_of_truth(frames, 2);
   ASSERT_EQ(rules.size(), 1U);
   EXPECT_THAT(rules[0].queries, testing::ElementsAre(1, 3, 9));  // 4 is too near 3

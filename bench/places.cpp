@@ -72,7 +72,7 @@ std::vector<std::string> measure(const std::string& name, int window_frames) {
           std::to_string(found.num_with_loop),
           fmt::format("{:.4f}", found.auc),
           fmt::format("{:.4f}", found.recall_at_full_precision),
-          std::to_string(found.num_wrong)};
+          std::to_string(found.num_false)};
 }
 
 std::function<void()> set_up(CLI::App& app) {

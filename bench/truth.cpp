@@ -241,8 +241,8 @@ std::vector<std::string> check(const std::string& text) {
           std::to_string(truth.loops.size()),
           std::to_string(num_confirmable),
           promise(walk, truth.loops, sees_the_same),
-          std::to_string(truth.impostors.size()),
-          promise(walk, truth.impostors, shares_nothing)};
+          std::to_string(truth.aliased_pairs.size()),
+          promise(walk, truth.aliased_pairs, shares_nothing)};
 }
 
 struct Options {

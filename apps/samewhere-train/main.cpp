@@ -28,8 +28,8 @@ constexpr const char* kExamples =
     "  samewhere train --images gallery.txt --validate twin:hotel?seed=8 --out mine.onnx\n"
     "  samewhere train --images gallery.txt --out small.onnx --code-size 264 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
-    "A training that was stopped, by Ctrl-C or otherwise, goes on when the same command is given\n"
-    "again. Beside FILE.onnx: FILE.json (the card), FILE.checkpoint (until all is done).";
+    "An interrupted training resumes when the same command is given again. Written beside\n"
+    "FILE.onnx: FILE.json (the card), FILE.checkpoint (until training is complete).";
 
 // What would be found out only after all images are read, or after hours.
 void check(const Job& job) {
@@ -79,7 +79,7 @@ bool run_epoch(Trainer& trainer, int num_epochs) {
 int interrupted(const Trainer& trainer) {
   return core::complain(
       "samewhere",
-      fmt::format("interrupted after epoch {}; the same command goes on from there",
+      fmt::format("interrupted after epoch {}; the same command resumes from there",
                   trainer.history().size()),
       core::kInterruptedExit);
 }
@@ -89,12 +89,12 @@ int train(const Job& job) {
   const ImageSet images = read(job);
   if (core::is_interrupted()) return core::kInterruptedExit;
   Trainer trainer(job.config, images, checkpoint_of(job.out), kCommit);
-  core::print("{} images to learn from, {} to validate\n", trainer.split().training.size(),
+  core::print("{} training images, {} validation images\n", trainer.split().training.size(),
               trainer.split().validation.size());
   if (!trainer.history().empty())
-    core::print("going on after epoch {}\n", trainer.history().size());
+    core::print("resuming after epoch {}\n", trainer.history().size());
   if (trainer.commits().size() > 1) {
-    spdlog::warn("begun by another program: trained by the commits {}",
+    spdlog::warn("resumed from another build: trained by the commits {}",
                  fmt::join(trainer.commits(), ", "));
   }
   while (!trainer.is_done()) {
@@ -115,10 +115,11 @@ int run(int argc, char** argv) {
   app.add_option("--images", job.images,
                  "recordings, folders of images, lists of images, twin:PRESET?seed=3")
       ->required();
-  app.add_option("--validate", job.validate,
-                 "the same, of other places: only to tell how well it goes; without it, blocks of "
-                 "--images are held back for that");
-  app.add_option("--out", job.out, "FILE.onnx, a name that is free")->required();
+  app.add_option(
+      "--validate", job.validate,
+      "the same, of other places, for validation; without it blocks of --images are held "
+      "out");
+  app.add_option("--out", job.out, "FILE.onnx; it must not exist")->required();
   const SettingOptions options(app, job.config);
   app.footer(kExamples);
   if (const std::optional<int> status = parse(app, argc, argv)) return *status;

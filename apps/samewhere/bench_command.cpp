@@ -155,24 +155,24 @@ int execute(const PaperCommand& command) {
 void add_paper_command(CLI::App& bench, int& exit_code) {
   auto command = std::make_shared<PaperCommand>();
   CLI::App* sub = bench.add_subcommand(
-      "paper", "The published method's tables on recordings whose loops are known");
+      "paper", "The tables of the published method on recordings with place truth");
   sub->add_option("SOURCE", command->sources,
                   "recordings and twin: buildings, each with the window of its protocol in frames "
                   "or seconds: kitchen@149, twin:hotel@10s")
       ->required();
   sub->add_option("--tables", command->tables,
-                  "2: AUC by number of draws, 3: milliseconds, 6: loops right and wrong")
+                  "2: AUC by number of draws, 3: milliseconds, 6: true and false loops")
       ->capture_default_str();
   sub->add_option("--describers", command->describers,
-                  "hog and ONNX files, separated by commas: each on the same frames under the same "
-                  "searches; without it the one that describe.method names");
+                  "hog and ONNX files, separated by commas, all on the same frames and searches; "
+                  "without it describe.method");
   sub->add_option("--blind-spot", command->blind_spot_views,
-                  "also how often the search misses the right queue, in stores of up to this many "
-                  "views, those of all sources and crops of them, e.g. 10000")
+                  "also the probability that the search misses the true queue, in stores of up to "
+                  "this many views (all sources and crops of them), e.g. 10000")
       ->check(CLI::Range(100, 1'000'000));
   sub->add_option(
       "--out", command->out,
-      "folder for the figures as CSV and the curves as SVG, one picture a recording; without it "
+      "folder for the results as CSV and the curves as SVG, one for each recording; without it "
       "none is written");
   add_config_options(*sub, command->config);
   sub->footer(
@@ -185,7 +185,7 @@ void add_paper_command(CLI::App& bench, int& exit_code) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
-  CLI::App* sub = app.add_subcommand("bench", "Measure a method on many recordings at once");
+  CLI::App* sub = app.add_subcommand("bench", "Benchmark a method on several recordings");
   sub->require_subcommand(1);
   sub->footer("Example: samewhere bench paper kitchen@149 (see samewhere bench paper --help)");
   add_paper_command(*sub, exit_code);

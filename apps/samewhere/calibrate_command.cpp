@@ -129,7 +129,7 @@ Views look_in_video(const std::string& video, const geometry::Board& board) {
   progress.finish();
   Views apart = views_apart(all);
   core::print(
-      "{} frames of {} read; {} sharp ones looked at, {} show the board, {} apart are used\n",
+      "{} frames of {} read; {} sharp frames searched, {} with the board, {} distinct views used\n",
       num_read, video, all.names.size() + all.names_without.size(), all.names.size(),
       apart.names.size());
   return apart;
@@ -148,8 +148,9 @@ void print_calibration(const geometry::Calibration& found, const Views& views) {
     return std::binary_search(found.left_out.begin(), found.left_out.end(), view);
   };
   for (std::size_t i = 0; i < views.names.size(); ++i) {
-    core::print("  {:6.3f}  {}{}\n", found.view_rmse_px[i], views.names[i],
-                is_left_out(i) ? "  left out: by another zoom or camera, or of a bent board?" : "");
+    core::print(
+        "  {:6.3f}  {}{}\n", found.view_rmse_px[i], views.names[i],
+        is_left_out(i) ? "  left out: another zoom or camera, or a board that is not flat?" : "");
   }
   const core::PinholeRadtan& c = found.camera;
   core::print("  {:6.3f}  all {} pictures{}\n\n", found.rmse_px,
@@ -177,7 +178,8 @@ void execute(const CalibrateCommand& command) {
 
 void add_calibrate_command(CLI::App& app) {
   auto command = std::make_shared<CalibrateCommand>();
-  CLI::App* sub = app.add_subcommand("calibrate", "A camera file from pictures of a checkerboard");
+  CLI::App* sub =
+      app.add_subcommand("calibrate", "Calibrate a camera from images of a checkerboard");
   sub->add_option("IMAGES", command->images,
                   "a folder or a list of images, or a video, of one camera")
       ->required();
@@ -193,11 +195,11 @@ void add_calibrate_command(CLI::App& app) {
       "Example:\n"
       "  samewhere calibrate boards/ --board 9x6 --square 0.025 --out camera.txt\n"
       "  samewhere calibrate board.mp4 --board 9x6 --square 0.025 --out camera.txt\n"
-      "The file: the 3 rows of the camera matrix, k1 k2 p1 p2 k3, width height. With it pictures\n"
-      "of another size are refused.\n"
-      "Take ten pictures or more; tilt the board differently in each and bring it to the corners\n"
-      "of the picture. Of a video sharp frames are taken that show the board in places apart.\n"
-      "A picture whose error is several times that of the others is left out and named.");
+      "The file: the 3 rows of the camera matrix, k1 k2 p1 p2 k3, width height. It is valid\n"
+      "for images of this size alone.\n"
+      "Take ten images or more; tilt the board differently in each and move it to the corners\n"
+      "of the image. From a video, sharp frames with distinct views of the board are used.\n"
+      "An image whose error is several times that of the others is left out and named.");
 }
 
 }  // namespace samewhere::app

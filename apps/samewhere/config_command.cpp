@@ -11,12 +11,14 @@ namespace {
 struct ConfigCommand {
   ConfigOptions config;
   bool as_table = false;
+  bool only_expert = false;
 };
 
 void print(const ConfigCommand& command) {
   const pipeline::Config config = load(command.config);
-  core::print(
-      "{}", command.as_table ? core::config_as_table(config) : core::config_as_yaml(config, true));
+  const core::Listed listed = command.only_expert ? core::Listed::kExpert : core::Listed::kBasic;
+  core::print("{}", command.as_table ? core::config_as_table(config, listed)
+                                     : core::config_as_yaml(config, true, listed));
 }
 
 }  // namespace
@@ -26,9 +28,12 @@ void add_config_command(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("config", "Print all settings with their meaning and range");
   add_config_options(*sub, command->config);
   sub->add_flag("--table", command->as_table, "as Markdown tables instead of YAML");
+  sub->add_flag("--expert", command->only_expert,
+                "the settings that are rarely changed, instead of the others");
   sub->footer(
       "Examples:\n"
-      "  samewhere config                           every setting with its default\n"
+      "  samewhere config                           the settings with their defaults\n"
+      "  samewhere config --expert                  the other ones: constants of the methods\n"
       "  samewhere config --profile paper > my.yaml a file to edit and give to --config");
   sub->callback([command] { print(*command); });
 }

@@ -57,10 +57,11 @@ void add_dense_command(CLI::App& app) {
       ->transform(as_run_folder);
   sub->add_option("--cloud", command->files.cloud, "coloured points, PLY");
   sub->add_option("--grid", command->files.grid,
-                  "plan for a map server: NAME.pgm and NAME.yaml are written");
-  sub->add_option("--octree", command->files.octree, "free and occupied space, OctoMap's .bt");
+                  "occupancy grid for a ROS map server: writes NAME.pgm and NAME.yaml");
+  sub->add_option("--octree", command->files.octree,
+                  "OctoMap octree of free and occupied space, .bt");
   sub->add_option("--set", command->assignments,
-                  "one setting other than in the run, e.g. dense.voxel_m=0.01; may be repeated")
+                  "a setting that differs from the run, e.g. dense.voxel_m=0.01; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   sub->footer(

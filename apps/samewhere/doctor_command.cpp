@@ -83,9 +83,9 @@ std::vector<report::Figure> describer_figures(const describe::Config& config) {
   const auto length = describer->describe(frame, picture).unit.size();
   const bool is_network = config.method == describe::Method::kAutoencoder;
   return {
-      {"view described by", is_network
-                                ? network::find_network("describe.network", config.network).string()
-                                : std::string("HOG")},
+      {"image descriptor", is_network
+                               ? network::find_network("describe.network", config.network).string()
+                               : std::string("HOG")},
       {"  descriptor", fmt::format("{} numbers, describer {:016x}", length, describer->checksum())},
       {"  time", fmt::format("{:.1f} ms preprocessing + {:.1f} ms description (640x480, median of "
                              "50)",
@@ -120,7 +120,7 @@ void print(const pipeline::Config& config) {
       figures.insert(figures.end(), measured.begin(), measured.end());
     }
   } catch (const core::InputError&) {
-    print_figures(figures);  // the machine is known even if the describer cannot be made
+    print_figures(figures);  // the machine is printed even if the describer cannot be made
     throw;
   }
   print_figures(figures);
@@ -130,8 +130,8 @@ void print(const pipeline::Config& config) {
 
 void add_doctor_command(CLI::App& app) {
   auto config = std::make_shared<ConfigOptions>();
-  CLI::App* sub = app.add_subcommand(
-      "doctor", "Print versions, machine and speed: what a report of a fault should hold");
+  CLI::App* sub =
+      app.add_subcommand("doctor", "Print versions, machine and speed, for a bug report");
   add_config_options(*sub, *config);
   sub->footer(
       "Examples:\n"

@@ -26,20 +26,19 @@ struct EvalCommand {
 void add_eval_command(CLI::App& app) {
   auto command = std::make_shared<EvalCommand>();
   CLI::App* sub =
-      app.add_subcommand("eval", "Measure a finished run against the truth of its source");
+      app.add_subcommand("eval", "Evaluate a finished run against the ground truth of its source");
   sub->add_option("RUN", command->folder,
                   "folder that `samewhere run` or `samewhere loops` wrote, or the map in it")
       ->required()
       ->transform(as_run_folder);
-  CLI::Option* truth = sub->add_option(
-      "--truth", command->truth,
-      "true trajectory, TUM format (stamp tx ty tz qx qy qz qw), where the recording has none");
+  CLI::Option* truth = sub->add_option("--truth", command->truth,
+                                       "ground truth trajectory, TUM format (stamp tx ty tz qx qy "
+                                       "qz qw), if the recording has none");
   CLI::Option* walk = sub->add_option(
       "--walk", command->walk,
-      "count accepted loops between floors; a list `image floor clip`, as the run's source");
+      "count accepted loops between floors, by a list `image floor clip` of the run's source");
   walk->excludes(truth);
-  sub->add_flag("--stages", command->stages,
-                "print where the time went instead: wall time and processor time of each stage")
+  sub->add_flag("--stages", command->stages, "print wall time and CPU time of each stage instead")
       ->excludes(truth)
       ->excludes(walk);
   add_json_option(*sub, command->figures);
@@ -59,7 +58,7 @@ void add_eval_command(CLI::App& app) {
     const auto figures = command->walk.empty()
                              ? run::evaluate_folder(command->folder, command->truth)
                              : run::evaluate_walk(command->folder, command->walk);
-    if (command->figures.is_for_person()) print_figures(figures);
+    if (command->figures.prints_text()) print_figures(figures);
     write_json(command->folder, figures, command->figures);
   });
 }

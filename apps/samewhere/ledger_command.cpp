@@ -43,7 +43,7 @@ bool is_wanted(const core::LedgerRow& row, const LedgerCommand& command) {
          (command.query < 0 || row.candidate.query.index() == query);
 }
 
-// A line each: who, what, and why. Sentences stand on the left, behind the table.
+// One line per candidate: frames, verdict and reason. The reason follows the table, left-aligned.
 std::string lines_of(const core::Ledger& rows) {
   report::Table table{{"candidate", "query", "match", "verdict", "stage"}, {}};
   for (const core::LedgerRow& row : rows) {
@@ -91,7 +91,7 @@ void replay(const LedgerCommand& command) {
   for (const auto& assignment : command.assignments)
     if (!assignment.starts_with("verify."))
       throw core::InputError("--set " + assignment +
-                             ": a replay has thresholds alone; expected verify.NAME=VALUE");
+                             ": a replay changes thresholds only; expected verify.NAME=VALUE");
   const core::Ledger ledger = run::ledger_of_run(command.folder);
   const verify::Config config = run::config_of_run(command.folder, command.assignments).verify;
   const auto replayed = run::replay(ledger, config);
@@ -103,12 +103,12 @@ void replay(const LedgerCommand& command) {
                                         [&](const auto& row) { return row.outcome == outcome; }));
   };
   print_figures({{"candidates", std::to_string(replayed.size())},
-                 {"as before", count(run::Replay::kSame)},
-                 {"judged otherwise", count(run::Replay::kChanged)},
+                 {"unchanged", count(run::Replay::kSame)},
+                 {"changed", count(run::Replay::kChanged)},
                  {"unmeasured", count(run::Replay::kUnmeasured)},
-                 {"refused by the graph of loops, not replayed", count(run::Replay::kGraph)}});
+                 {"rejected by the pose graph, not replayed", count(run::Replay::kGraph)}});
   core::print("\n{}", report::funnel_text(report::funnel(rows_after(replayed))));
-  if (!changed.empty()) core::print("\nJudged otherwise:\n{}", lines_of(changed));
+  if (!changed.empty()) core::print("\nChanged:\n{}", lines_of(changed));
 }
 
 void change(const LedgerCommand& command, run::Override override_as) {
@@ -116,19 +116,18 @@ void change(const LedgerCommand& command, run::Override override_as) {
   for (const auto& assignment : command.assignments)
     if (std::none_of(std::begin(kSections), std::end(kSections),
                      [&](const char* section) { return assignment.starts_with(section); }))
-      throw core::InputError(
-          "--set " + assignment +
-          ": expected a setting of optimize, map or verify; the others belong to "
-          "what the run has seen");
+      throw core::InputError("--set " + assignment +
+                             ": expected a setting of optimize, map or verify; the others need the "
+                             "images");
   const auto changed =
       run::override_run(command.folder, command.candidate, override_as, command.assignments);
   core::print("{}", lines_of(changed.rows));
-  print_figures(
-      {{"loops", fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
-       {"farthest that a keyframe moved", fmt::format("{:.3f} m", changed.farthest_m)}});
+  print_figures({{"loop closures",
+                  fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
+                 {"largest motion of a keyframe", fmt::format("{:.3f} m", changed.farthest_m)}});
   core::print(
-      "Written anew: map.sw, loops.json, trajectory.tum, odometry.tum, frames.csv, map.ply.\n"
-      "As it was: report.html, and what `samewhere dense` made.\n");
+      "Updated: map.sw, loops.json, trajectory.tum, odometry.tum, frames.csv, map.ply.\n"
+      "Not updated: report.html and the files of `samewhere dense`.\n");
 }
 
 // As core::stage_of() calls them.
@@ -140,26 +139,26 @@ std::vector<std::string> names_of_stages() {
 }
 
 void add_list(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
-  CLI::App* sub = ledger.add_subcommand("list", "The candidates, a line each");
-  sub->add_option("--verdict", command->verdict, "only these")
+  CLI::App* sub = ledger.add_subcommand("list", "List the candidates, one per line");
+  sub->add_option("--verdict", command->verdict, "only candidates with this verdict")
       ->check(CLI::IsMember({"LOOP", "NOT", "AMBIGUOUS"}));
-  sub->add_option("--stage", command->stage, "only those that this check refused")
+  sub->add_option("--stage", command->stage, "only candidates decided by this check")
       ->check(CLI::IsMember(names_of_stages()));
-  sub->add_option("--query", command->query, "only those of this frame");
+  sub->add_option("--query", command->query, "only candidates of this query frame");
   sub->callback([command] { list(*command); });
 }
 
 void add_show(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
-  CLI::App* sub = ledger.add_subcommand("show", "All that was measured of one candidate");
+  CLI::App* sub = ledger.add_subcommand("show", "Show all measurements of one candidate");
   sub->add_option("N", command->candidate, "its number, as `list` prints it")->required();
   sub->add_option("--picture", command->picture,
-                  "SVG file to write: both views side by side and what matches");
+                  "SVG file to write: both views with their feature matches");
   sub->callback([command] { show(*command); });
 }
 
 void add_replay(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
   CLI::App* sub = ledger.add_subcommand(
-      "replay", "Judge all candidates anew, with other thresholds and without the pictures");
+      "replay", "Verify all candidates again with other thresholds, without the images");
   sub->add_option("--set", command->assignments, "verify.NAME=VALUE, as often as needed")
       ->required();
   sub->callback([command] { replay(*command); });
@@ -178,7 +177,7 @@ void add_change(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command,
 void add_ledger_command(CLI::App& app) {
   auto command = std::make_shared<LedgerCommand>();
   CLI::App* sub = app.add_subcommand(
-      "ledger", "Why each candidate of a run was refused or not; another word on it");
+      "ledger", "Inspect, replay and override the loop closure decisions of a run");
   sub->add_option("RUN", command->folder,
                   "folder that `samewhere run` or `samewhere loops` wrote, or the map in it")
       ->required()
@@ -188,9 +187,9 @@ void add_ledger_command(CLI::App& app) {
   add_show(*sub, command);
   add_replay(*sub, command);
   add_change(*sub, command, run::Override::kReject, "reject",
-             "Take an accepted loop back with all that it caused: the map is corrected");
+             "Withdraw an accepted loop with all that it caused, and correct the map");
   add_change(*sub, command, run::Override::kForce, "force",
-             "Close a loop that the judge refused, if odometry and the other loops bear it");
+             "Accept a rejected loop if it is consistent with odometry and the other loops");
   sub->footer(
       "Examples:\n"
       "  samewhere ledger runs/demo list --stage odometry\n"

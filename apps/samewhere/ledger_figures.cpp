@@ -14,7 +14,7 @@ namespace {
 
 class Figures {
  public:
-  // `bar`: what it was held against; empty if nothing.
+  // `bar`: the threshold; empty without one.
   void add(const char* name, std::optional<double> value, const char* unit = "",
            const std::string& bar = {}) {
     add(name, value ? fmt::format("{:.4g}{}{}", *value, unit, bar) : "unmeasured");
@@ -42,49 +42,50 @@ void add_geometry(const std::optional<core::GeometryEvidence>& geometry,
   using Geometry = core::GeometryEvidence;
   figures.add("matches", value(&Geometry::num_matches), "", at_least(config.min_matches));
   if (geometry && geometry->num_guided_matches > 0)
-    figures.add("matches around the pose", value(&Geometry::num_guided_matches));
+    figures.add("matches guided by the pose", value(&Geometry::num_guided_matches));
   figures.add("inliers", value(&Geometry::num_inliers), "", at_least(config.min_inliers));
-  figures.add("inliers of matches", found(&Geometry::inlier_ratio));
-  figures.add("share of the picture", found(&Geometry::spread_ratio), "",
+  figures.add("inlier ratio", found(&Geometry::inlier_ratio));
+  figures.add("spread over the image", found(&Geometry::spread_ratio), "",
               at_least(config.min_spread_ratio));
-  figures.add("share seen by both", found(&Geometry::overlap_ratio));
+  figures.add("overlap of the views", found(&Geometry::overlap_ratio));
   figures.add("reprojection error", found(&Geometry::reprojection_rmse_px), " px");
-  const auto apart_m = geometry ? geometry->disagreement_m : std::nullopt;
+  const auto apart_m = geometry ? geometry->pose_difference_m : std::nullopt;
   if (apart_m && std::isinf(*apart_m)) {
-    figures.add("poses of both views apart", "one of them finds none");
+    figures.add("distance of the poses of both views", "one view gives no pose");
   } else {
-    figures.add("poses of both views apart", apart_m, " m", at_most(config.max_disagreement_m));
+    figures.add("distance of the poses of both views", apart_m, " m",
+                at_most(config.max_pose_difference_m));
   }
 }
 
 void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
                   const verify::Config& config, Figures& figures) {
-  figures.add("moves the camera by",
+  figures.add("correction of the query pose",
               odometry ? std::optional(odometry->correction_m) : std::nullopt, " m");
-  figures.add("chi-square of odometry",
+  figures.add("odometry gate, chi-square",
               odometry ? std::optional(odometry->mahalanobis_squared) : std::nullopt, "",
               at_most(config.max_odometry_chi_square));
 }
 
-std::string text_of(const core::RivalEvidence& rival, const verify::Config& config) {
+std::string text_of(const core::CompetingLoopEvidence& loop, const verify::Config& config) {
   std::string text =
-      fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}", rival.frame.index(),
-                  rival.apart_m, rival.mahalanobis_squared, at_most(config.max_rival_chi_square));
-  if (rival.gain) {
-    text += fmt::format("; odometry's gain over it {:.4g}{}", *rival.gain,
-                        at_least(config.min_rival_gain));
+      fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}", loop.frame.index(), loop.apart_m,
+                  loop.mahalanobis_squared, at_most(config.max_competing_chi_square));
+  if (loop.gain) {
+    text +=
+        fmt::format("; likelihood gain {:.4g}{}", *loop.gain, at_least(config.min_competing_gain));
   }
   return text;
 }
 
-std::string text_of(const core::OtherPlaceEvidence& other, const verify::Config& config) {
+std::string text_of(const core::CompetingPlaceEvidence& place, const verify::Config& config) {
   return fmt::format("frame {}, {:.2f} m away, {} inliers (at most {:.0f} % of those here)",
-                     other.frame.index(), other.apart_m, other.num_inliers,
-                     100.0 * config.max_other_place_ratio);
+                     place.frame.index(), place.apart_m, place.num_inliers,
+                     100.0 * config.max_competing_place_ratio);
 }
 
 std::string text_of(const core::SequenceEvidence& sequence, const verify::Config& config) {
-  return fmt::format("{}{}, {} inliers in all", sequence.num_views, at_least(config.min_views),
+  return fmt::format("{}{}, {} inliers in total", sequence.num_views, at_least(config.min_views),
                      sequence.num_inliers);
 }
 
@@ -107,9 +108,9 @@ std::vector<report::Figure> figures_of(const core::LedgerRow& row, const verify:
                   : std::string());
   add_geometry(evidence.geometry, config, figures);
   add_odometry(evidence.odometry, config, figures);
-  figures.add("where the last loop has it", text(evidence.rival));
-  figures.add("another place that it shows", text(evidence.other_place));
-  figures.add("views in a row", text(evidence.sequence));
+  figures.add("competing hypothesis of the last loop", text(evidence.competing_loop));
+  figures.add("competing hypothesis of another place", text(evidence.competing_place));
+  figures.add("consecutive views", text(evidence.sequence));
   return figures.taken();
 }
 

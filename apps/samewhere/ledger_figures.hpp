@@ -8,7 +8,7 @@
 
 namespace samewhere::app {
 
-// All that was measured of one candidate, with the bar that each figure was held against.
+// All measurements of one candidate with their thresholds.
 std::vector<report::Figure> figures_of(const core::LedgerRow& row, const verify::Config& config);
 
 }  // namespace samewhere::app

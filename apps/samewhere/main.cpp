@@ -10,7 +10,7 @@ namespace samewhere::app {
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app("Visual SLAM that knows when two places only look the same");
+  CLI::App app("Visual SLAM that rejects false loop closures caused by perceptual aliasing");
   app.set_version_flag("--version", "samewhere " SAMEWHERE_VERSION);
   app.require_subcommand(1);
   app.footer(

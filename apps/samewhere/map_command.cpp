@@ -20,7 +20,7 @@ struct MapCommand {
 };
 
 void add_info(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
-  map.add_subcommand("info", "What is in the map, and the settings it was made with")
+  map.add_subcommand("info", "Print the contents of the map and the settings of its run")
       ->callback([command] {
         scene::MapFile file = scene::MapFile::open(command->file);
         print_figures(run::figures_of_map(file.header(), file.load()));
@@ -28,14 +28,14 @@ void add_info(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
 }
 
 void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
-  CLI::App* sub = map.add_subcommand("export", "Write the map in the formats of the field");
+  CLI::App* sub = map.add_subcommand("export", "Export the map to PLY, TUM, KITTI or g2o");
   sub->add_option("--ply", command->ply, "landmarks as a point cloud");
   sub->add_option("--tum", command->tum, "measured frames: stamp tx ty tz qx qy qz qw");
   sub->add_option("--kitti", command->kitti, "the same frames, without stamps: 3 x 4 matrices");
-  sub->add_option("--g2o", command->g2o, "keyframes, odometry and loops as a pose graph");
+  sub->add_option("--g2o", command->g2o, "pose graph of keyframes, odometry and loop closures");
   sub->add_option("--session", command->session,
-                  "of --tum and --kitti: which session's frames, 0 = the run that made the map; "
-                  "needed where there are several")
+                  "session whose frames --tum and --kitti export, 0 = the run that made the map; "
+                  "required if the map holds several")
       ->check(CLI::Range(0, 1'000'000));
   sub->callback([command] {
     run::export_map(scene::MapFile::open(command->file).load(),
@@ -47,7 +47,7 @@ void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
 
 void add_map_command(CLI::App& app) {
   auto command = std::make_shared<MapCommand>();
-  CLI::App* sub = app.add_subcommand("map", "Look into a map file, or export it");
+  CLI::App* sub = app.add_subcommand("map", "Inspect or export a map file");
   sub->add_option("FILE", command->file, "map.sw of a run, or the run's folder")
       ->required()
       ->transform(as_map_file);

@@ -14,8 +14,7 @@ void add_config_options(CLI::App& command, ConfigOptions& options) {
                   "built-in settings: default, recognition (of `samewhere loops`), or paper (the "
                   "published method)")
       ->capture_default_str();
-  command.add_option("--config", options.file,
-                     "YAML file with settings that differ from the profile");
+  command.add_option("--config", options.file, "YAML file with settings that override the profile");
   command
       .add_option("--set", options.assignments,
                   "one setting, e.g. verify.min_inliers=30; may be repeated")

@@ -24,13 +24,12 @@ pipeline::Config load(const ConfigOptions& options);
 std::string as_run_folder(const std::string& path);
 std::string as_map_file(const std::string& path);
 
-// From now on an empty value, which is what an unset variable of a shell leaves, is an error of
-// every option and positional argument of the command and those below it.
+// Makes an empty value, such as that of an unset shell variable, an error for all options and
+// positional arguments of the command and its subcommands.
 void refuse_empty_values(CLI::App& command);
 
-// After parsing has failed: the word that stands where one of the commands below `app`, or below
-// the one that was chosen, is expected; with the command that was probably meant. Nothing if that
-// is not what is wrong.
+// After failed parsing: the word in place of a subcommand of `app` or of the chosen command, with
+// the command that was probably meant. Nothing if the failure has another reason.
 std::optional<std::string> unknown_command(const CLI::App& app);
 
 }  // namespace samewhere::app

@@ -20,12 +20,12 @@ void print_figures(const std::vector<report::Figure>& figures) {
 
 void add_json_option(CLI::App& command, FigureOptions& options) {
   command.add_option("--json", options.json,
-                     "file for the figures as JSON; - for standard output, in place of the text");
+                     "file for the metrics as JSON; - for standard output, instead of the text");
 }
 
 void add_quiet_flag(CLI::App& command, FigureOptions& options) {
   command.add_flag("--quiet", options.is_quiet,
-                   "print neither figures nor progress; warnings and errors remain");
+                   "print neither metrics nor progress; warnings and errors remain");
 }
 
 void write_json(const std::string& title, const std::vector<report::Figure>& figures,

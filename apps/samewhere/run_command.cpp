@@ -113,14 +113,14 @@ void print_outcome(const run::RunOutcome& outcome, const std::filesystem::path& 
   core::print("{}\n", (core::is_there(page) ? page : folder).string());
 }
 
-// Who runs a camera knows that frames may be lost; of pictures and rendered worlds none may, for
-// what is known about them counts by their positions.
+// A live camera may drop frames. Images and rendered buildings may not: their ground truth refers
+// to frame positions.
 void require_realtime_as_told(const std::string& source, const core::SourceInfo& info,
                               bool is_realtime) {
   if (info.is_live && !is_realtime) {
     throw core::InputError(source +
-                           ": is a camera, whose frames come whether they are taken or not; "
-                           "expected --realtime, which drops what comes too fast and counts it");
+                           ": is a live camera; expected --realtime, which drops frames that "
+                           "come too fast and counts them");
   }
   if (is_realtime && !info.is_live && !info.is_video) {
     throw core::InputError(source +
@@ -204,7 +204,7 @@ int execute(const RunCommand& command, Work work) {
     record.config_yaml =
         core::config_as_yaml(with_estimated_camera(config, calibration, results.path()));
     errors = write(outcome, work, results.path());
-    if (command.figures.is_for_person()) print_outcome(outcome, results.path());
+    if (command.figures.prints_text()) print_outcome(outcome, results.path());
     write_json(record.title, record.figures, command.figures);
   } else if (!record.input_error && !record.is_interrupted) {
     throw core::InputError(command.source + ": gives no frame");
@@ -216,16 +216,15 @@ int execute(const RunCommand& command, Work work) {
 
 void add_fov_option(CLI::App& sub, RunCommand& command) {
   sub.add_option("--fov", command.fov_deg,
-                 "horizontal field of view in degrees, of one camera without calibration; without "
+                 "horizontal field of view in degrees of one camera without calibration; without "
                  "it guessed and then estimated")
       ->check(CLI::Range(5.0, 170.0));
 }
 
 void add_map_options(CLI::App& sub, RunCommand& command) {
-  CLI::Option* map = sub.add_option(
-      "--map", command.map,
-      "start in this map, lost until a place is recognised; it grows by what is seen");
-  sub.add_flag("--localize", command.localize, "leave the map of --map as it is")->needs(map);
+  CLI::Option* map = sub.add_option("--map", command.map,
+                                    "start LOST in this map and relocalize; the map is extended");
+  sub.add_flag("--localize", command.localize, "do not extend the map of --map")->needs(map);
 }
 
 CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, Work work,
@@ -239,25 +238,24 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
          "video, a camera (/dev/video0), or twin:PRESET?seed=3")
       ->required();
   sub->add_option("--out", command->out,
-                  "folder for the results; without it runs/NAME, never overwriting");
+                  "folder for the results; without it a new folder runs/NAME");
   sub->add_flag("--force", command->is_forced,
-                "--out may hold the results of an earlier run, which the new ones replace from the "
-                "first good frame on");
-  sub->add_option(
-      "--camera", command->camera,
-      "camera file: as `samewhere calibrate` writes it, OpenCV, ORB-SLAM, ROS, Kalibr, COLMAP or "
-      "JSON; without it the source's own");
+                "replace the results of an earlier run in --out, from the first good frame on");
+  sub->add_option("--camera", command->camera,
+                  "camera file of `samewhere calibrate`, OpenCV, ORB-SLAM, ROS, Kalibr, COLMAP or "
+                  "JSON; without "
+                  "it that of the recording");
   sub->add_flag("--realtime", command->is_realtime,
-                "a camera, or a video played at its own pace: always the newest frame; says how "
-                "many were dropped; two such runs need not agree");
+                "process a camera or a video in real time: always the newest frame, others are "
+                "dropped and counted; results differ from run to run");
   add_config_options(*sub, command->config);
   add_json_option(*sub, command->figures);
   add_quiet_flag(*sub, command->figures);
   sub->add_flag_callback(
       "--measure-all",
       [command] { command->config.assignments.push_back("verify.measure_all=true"); },
-      "measure candidates, too, that verify.min_similarity or verify.pause_frames refuse, so that "
-      "`ledger RUN replay` knows all");
+      "also measure candidates that verify.min_similarity or verify.pause_frames reject, for "
+      "`ledger RUN replay`");
   if (work == Work::kSlam) add_fov_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
@@ -267,22 +265,25 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
-  add_source_command(app, "run", "SLAM: trajectory, map and judged loops of a recording",
+  add_source_command(app, "run", "SLAM: trajectory, map and verified loop closures of a recording",
                      Work::kSlam, exit_code)
       ->footer(
           "Examples:\n"
-          "  samewhere run twin:twin-corridors --out runs/demo  the built-in world, no download\n"
+          "  samewhere run twin:twin-corridors --out runs/demo  the rendered building, no "
+          "download\n"
           "  samewhere run ~/data/fr1_room                      a TUM RGB-D folder with "
           "camera.txt\n"
           "  samewhere run walk.mp4 --camera camera.txt         a video\n"
-          "  samewhere run walk.mp4 --camera camera.txt --realtime  played, as a camera sees it\n"
+          "  samewhere run walk.mp4 --camera camera.txt --realtime  in real time, as a live "
+          "camera\n"
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
-          "  samewhere run today --map runs/kitchen/map.sw --localize  where was this, in that "
-          "map?");
+          "  samewhere run today --map runs/kitchen/map.sw --localize  localize in a saved "
+          "map");
 }
 
 void add_loops_command(CLI::App& app, int& exit_code) {
-  add_source_command(app, "loops", "Recognition alone: which frames show a place seen before",
+  add_source_command(app, "loops",
+                     "Place recognition without SLAM: frames that show an earlier place",
                      Work::kRecognition, exit_code)
       ->footer(
           "Examples:\n"

@@ -20,7 +20,7 @@ namespace samewhere::app {
 namespace {
 
 // Becomes the training program, which lies beside this one where it was built: it needs libtorch,
-// and whoever does not train needs not have that.
+// which is optional.
 [[noreturn]] void start_training(std::vector<std::string> arguments) {
   const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const std::string program = (here / "samewhere-train").string();
@@ -47,7 +47,7 @@ void train_words(const WordsCommand& command) {
   training.out = command.out;
   if (training.out.extension() == ".json") {
     throw core::InputError("--out = " + command.out +
-                           ": the card is written there; expected another ending, such as .bin");
+                           ": reserved for the card; expected another ending, such as .bin");
   }
   core::make_writable_folder(std::filesystem::absolute(training.out).parent_path());
   training.command = "samewhere train words";
@@ -63,15 +63,15 @@ void train_words(const WordsCommand& command) {
 
 void add_words_command(CLI::App& train) {
   auto command = std::make_shared<WordsCommand>();
-  CLI::App* sub = train.add_subcommand(
-      "words", "Grow the vocabulary of ORB features by which similar views are found");
+  CLI::App* sub =
+      train.add_subcommand("words", "Train a vocabulary of visual words from ORB features");
   sub->set_help_flag("-h,--help", "Print this help message and exit");
   run::VocabularyTraining& training = command->training;
   sub->add_option("SOURCE", training.sources, "recordings, folders or lists of images, twin:PRESET")
       ->required();
-  sub->add_option("--out", command->out, "file to write; its card is written beside it")
+  sub->add_option("--out", command->out, "vocabulary file to write, with a card (JSON) beside it")
       ->capture_default_str();
-  sub->add_option("--step", training.step, "look at one picture of so many")
+  sub->add_option("--step", training.step, "use every N-th image")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   sub->add_option("--branching", training.grow.branching, "children of a node")

@@ -77,7 +77,7 @@ void check(const TwinCommand& command) {
   }
   if (command.out.empty() && !has_sheet(command)) {
     throw core::InputError(
-        "twin: no folder was named; expected --out DIR, a name that is free, or --sheet FILE.jpg");
+        "twin: no folder was named; expected --out DIR (must not exist) or --sheet FILE.jpg");
   }
   if (command.format != "tum" && command.format != "euroc") {
     throw core::InputError(fmt::format("--format {}: expected one of: tum, euroc", command.format));
@@ -105,9 +105,9 @@ void write_walk(const TwinCommand& command, const pipeline::Config& config) {
       return twin::SideTables{twin::watched_truth(*walk), walk->wheels()};
     };
     write_folder(command, *source, tables);
-    core::print("{}: {} frames of {}, {} true returns, {} impostors\n", command.out,
+    core::print("{}: {} frames of {}, {} true loops, {} aliased pairs\n", command.out,
                 walk->num_frames(), command.source, walk->truth().loops.size(),
-                walk->truth().impostors.size());
+                walk->truth().aliased_pairs.size());
   }
   write_sheets(command, *walk, config.twin);
 }
@@ -122,14 +122,15 @@ void write(const TwinCommand& command) {
     return;
   }
   if (has_sheet(command)) {
-    throw core::InputError(command.source + ": a sheet shows rendered buildings, twin:PRESET");
+    throw core::InputError(command.source +
+                           ": a sheet needs a rendered building; expected twin:PRESET");
   }
   const auto source = run::open_source(config);
   write_folder(command, *source, nullptr);
   core::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);
 }
 
-// The list alone is printed: what stands beside it would be passed over.
+// --list prints the presets only; other options would be ignored.
 void check_list_stands_alone(const CLI::App& command, const CLI::Option& list) {
   for (const CLI::Option* option : command.get_options()) {
     if (option == &list || option->count() == 0) continue;
@@ -143,27 +144,26 @@ void check_list_stands_alone(const CLI::App& command, const CLI::Option& list) {
 void add_twin_command(CLI::App& app) {
   auto command = std::make_shared<TwinCommand>();
   CLI::App* sub = app.add_subcommand(
-      "twin", "Write a walk through a rendered look-alike building as a folder others can read");
+      "twin", "Export a rendered sequence through a building with look-alike places as a data set");
   sub->add_option("SOURCE", command->source,
                   "twin:PRESET?seed=3&similarity=0.9, or any recording that `run` reads");
-  CLI::Option* out = sub->add_option("--out", command->out, "folder to write, a name that is free");
+  CLI::Option* out = sub->add_option("--out", command->out, "folder to write; it must not exist");
   sub->add_option("--format", command->format,
                   "tum (TUM RGB-D: colour, depth, poses) or euroc (EuRoC: one or two cameras, "
                   "inertial samples, poses)")
       ->capture_default_str()
       ->needs(out);
-  sub->add_option("--sheet", command->sheet, "JPEG file for twelve pictures of the walk");
+  sub->add_option("--sheet", command->sheet, "JPEG file with twelve frames of the sequence");
   sub->add_option("--similarity-sheet", command->similarity_sheet,
-                  "JPEG file for one place and its twin at similarity 0, 0.5, 0.9 and 1, "
-                  "whatever SOURCE says");
+                  "JPEG file with a place and its look-alike at similarity 0, 0.5, 0.9 and 1, "
+                  "regardless of SOURCE");
   const CLI::Option* list =
-      sub->add_flag("--list", command->is_list, "print the presets, a line each");
+      sub->add_flag("--list", command->is_list, "print the presets, one per line");
   add_config_options(*sub, command->config);
   sub->footer(
       "Keys of twin:PRESET?KEY=VALUE&KEY=VALUE: seed; similarity, 0 to 1; speed, 0.5 to 2; people, "
       "0 to 30;\n"
-      "stray, 0 to 1: metres that who walks leaves the middle of the way, the camera held "
-      "elsewhere;\n"
+      "stray, 0 to 1: lateral deviation of the path in m, with camera shake;\n"
       "camera: rgbd, stereo or mono.\n\n"
       "Examples:\n"
       "  samewhere twin --list\n"

@@ -152,7 +152,7 @@ TEST_F(BadInput, UnwritableOutputFolder) {
   expect_clear_error(
       run("run " + quoted(source()) + " --out " + quoted(folder_.root() / "a_file/out")),
       {"a_file/out"});
-  // nobody may make folders there, not even root
+  // no user may make folders there, not even root
   expect_clear_error(run("run " + quoted(source()) + " --out /proc/nowhere"), {"/proc/nowhere"});
 }
 

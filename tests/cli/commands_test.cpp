@@ -51,7 +51,7 @@ TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
   const Outcome found = run(loops + quoted(path("mine.bin")));
   EXPECT_EQ(found.exit_code, 0) << found.err;
   // of frames 3, 4 and 5: all older ones that the window allows
-  EXPECT_EQ(row_of(found.out, "candidates judged"), "6");
+  EXPECT_EQ(row_of(found.out, "loop candidates"), "6");
   EXPECT_EQ(run("train words " + walk + " --out " + quoted(path("words.json"))).exit_code, 2);
   const Outcome missing = run(loops + "no.bin --force");
   EXPECT_EQ(missing.exit_code, 2);
@@ -89,12 +89,22 @@ TEST_F(Commands, ConfigPrintsWhatConfigReads) {
   EXPECT_EQ(again.out, printed.out);
 }
 
+TEST_F(Commands, AnOldKeyIsRefusedWithItsNameNow) {
+  const Outcome renamed = run("config --set track.lost.max_speed_m_s=1");
+  EXPECT_EQ(renamed.exit_code, 2);
+  EXPECT_NE(renamed.err.find("track.lost is now track.relocalization"), std::string::npos)
+      << renamed.err;
+}
+
 TEST_F(Commands, TheCommittedConfigFilesAreWhatTheProgramHas) {
   const std::filesystem::path repository = SAMEWHERE_REPOSITORY;
   EXPECT_EQ(run("config").out, core::read_file(repository / "configs/default.yaml"))
       << "make it anew: samewhere config > configs/default.yaml";
   const std::string table = core::read_file(repository / "docs/config.md");
   EXPECT_NE(table.find(run("config --table").out), std::string::npos) << "make docs/config.md anew";
+  const std::string expert = core::read_file(repository / "docs/config-expert.md");
+  EXPECT_NE(expert.find(run("config --table --expert").out), std::string::npos)
+      << "make docs/config-expert.md anew";
 }
 
 TEST_F(Commands, DoctorPrintsWhatAReportOfAFaultNeeds) {

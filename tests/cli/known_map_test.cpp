@@ -41,8 +41,8 @@ TEST_F(KnownMap, WhatItRecognisedIsToldAndShown) {
   const Outcome found =
       run(fmt::format("run {} --map {} --localize --out {}", kWalk, in("a/map.sw"), in("b")));
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_THAT(found.out, HasSubstr("candidates of the known map / accepted"));
-  EXPECT_THAT(found.out, testing::ContainsRegex("candidates judged  *0\n"))
+  EXPECT_THAT(found.out, HasSubstr("candidates in the loaded map / accepted"));
+  EXPECT_THAT(found.out, testing::ContainsRegex("loop candidates  *0\n"))
       << "what no truth knows does not count";
   EXPECT_THAT(run(fmt::format("ledger {} list --verdict LOOP", in("b"))).out,
               HasSubstr(" of session 0 "));
@@ -83,14 +83,14 @@ TEST_F(KnownMap, DoesNotGrowByARunWithoutItsDepth) {
   EXPECT_FALSE(std::filesystem::exists(path("b")));
 }
 
-TEST_F(KnownMap, AMapThatSomebodyWritesToIsNotRemoved) {
+TEST_F(KnownMap, AMapThatIsBeingWrittenIsNotRemoved) {
   const scene::WriterLock lock(path("a/map.sw"), scene::WriterLock::File::kIsThere);
   expect_refused(fmt::format("run {} --out {} --force", kWalk, in("a")),
                  "a/map.sw: another program is writing to this map");
   EXPECT_TRUE(std::filesystem::exists(path("a/trajectory.tum")));
 }
 
-TEST_F(KnownMap, ResultsGoIntoNobodyElsesFolder) {
+TEST_F(KnownMap, ResultsDoNotGoIntoAForeignFolder) {
   ASSERT_EQ(run(fmt::format("twin {} --out {}", kWalk, in("d"))).exit_code, 0);
   const std::string frames = core::read_file(path("d/frames.csv"));
   expect_refused(fmt::format("run {} --out {}", kWalk, in("d")),

@@ -38,7 +38,7 @@ class LedgerCommand : public testing::Test {
   input::TestFolder folder_;
 };
 
-TEST_F(LedgerCommand, ListsWhoWasRefusedAndWhy) {
+TEST_F(LedgerCommand, ListsRejectedCandidatesWithReasons) {
   const Outcome all = run("list");
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.out, HasSubstr("812"));
@@ -61,8 +61,8 @@ TEST_F(LedgerCommand, ShowsAllThatWasMeasuredOfOne) {
 TEST_F(LedgerCommand, ReplaysWithOtherThresholds) {
   const Outcome strict = run("replay --set verify.min_inliers=80");
   EXPECT_EQ(strict.exit_code, 0) << strict.err;
-  EXPECT_THAT(strict.out, HasSubstr("Judged otherwise"));
-  EXPECT_THAT(strict.out, HasSubstr("only 60 features agree on one geometry, 80 needed"));
+  EXPECT_THAT(strict.out, HasSubstr("\nChanged:"));
+  EXPECT_THAT(strict.out, HasSubstr("only 60 inliers of one geometry, 80 needed"));
   const Outcome lax = run("replay --set verify.max_odometry_chi_square=500");
   EXPECT_THAT(lax.out, HasSubstr("90 features agree"));
   EXPECT_EQ(run("replay --set verify.nonsense=1").exit_code, 2);
@@ -111,7 +111,7 @@ TEST(LedgerOfARun, TakesALoopBackAndClosesItAgain) {
   const Outcome rejected = ledger("reject 0");
   EXPECT_EQ(rejected.exit_code, 0) << rejected.err;
   EXPECT_THAT(rejected.out, HasSubstr(fmt::format("{} (before: {})", num_before - 1, num_before)));
-  EXPECT_THAT(ledger("show 0").out, HasSubstr("taken back by hand"));
+  EXPECT_THAT(ledger("show 0").out, HasSubstr("withdrawn by hand"));
   EXPECT_EQ(num_loops(), num_before - 1);
   const Outcome forced = ledger("force 0");
   EXPECT_EQ(forced.exit_code, 0) << forced.err;

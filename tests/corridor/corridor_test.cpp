@@ -24,9 +24,9 @@ TEST(Corridor, ALookalikeDoorIsNeverMistakenForAnotherAndTheTrueReturnTakesTheDr
   const auto evaluation = run::evaluate_slam(run::findings_of(record, false), truth);
 
   EXPECT_EQ(evaluation.num_measured, evaluation.num_frames);
-  EXPECT_EQ(evaluation.loops.num_wrong, 0);
+  EXPECT_EQ(evaluation.loops.num_false, 0);
   EXPECT_GT(evaluation.num_candidates, 100) << "zero wrong among none proves nothing";
-  EXPECT_GE(evaluation.loops.num_right, 1);
+  EXPECT_GE(evaluation.loops.num_true, 1);
   EXPECT_EQ(evaluation.loops.num_revisits, 1);
   EXPECT_EQ(evaluation.loops.num_closed, 1);
   ASSERT_TRUE(evaluation.ate && evaluation.odometry_ate);

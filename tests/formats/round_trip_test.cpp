@@ -52,8 +52,8 @@ void expect_same_truth(const core::Truth& found, const core::Truth& expected, do
   }
   ASSERT_TRUE(found.places);
   EXPECT_EQ(found.places->values, expected.places->values);
-  EXPECT_FALSE(expected.impostors.empty());
-  EXPECT_EQ(found.impostors, expected.impostors);
+  EXPECT_FALSE(expected.aliased_pairs.empty());
+  EXPECT_EQ(found.aliased_pairs, expected.aliased_pairs);
 }
 
 void expect_same_inertial_truth(const std::vector<core::InertialTruth>& found,
@@ -98,7 +98,7 @@ void expect_same_rig(const core::Rig& found, const core::Rig& expected) {
 twin::MakeTables tables_of(const twin::TestSource& source) {
   return [&source] {
     return twin::SideTables{.truth = {.frames = std::vector<twin::FrameTruth>(kNumFrames),
-                                      .impostors = source.impostors()},
+                                      .aliased_pairs = source.aliased_pairs()},
                             .wheels = {}};
   };
 }

@@ -59,15 +59,15 @@ TEST_F(Golden, RedkitchenIsTrackedToTheEndInOneMap) {
   const auto run = slam("redkitchen");
   EXPECT_EQ(run.num_measured, 1000);
   EXPECT_LT(run.ate->rmse_m, 0.06);
-  EXPECT_EQ(run.loops.num_wrong, 0);
+  EXPECT_EQ(run.loops.num_false, 0);
 }
 
 TEST_F(Golden, HololensComesBackToWhereItWas) {
   const auto run = slam("hololens");
   EXPECT_EQ(run.num_measured, 373);
   EXPECT_LT(run.ate->rmse_m, 0.20);
-  EXPECT_GE(run.loops.num_right, 1);
-  EXPECT_EQ(run.loops.num_wrong, 0);
+  EXPECT_GE(run.loops.num_true, 1);
+  EXPECT_EQ(run.loops.num_false, 0);
 }
 
 TEST_F(Golden, AlmostPureRotationIsTrackedToTheEnd) {
@@ -75,7 +75,7 @@ TEST_F(Golden, AlmostPureRotationIsTrackedToTheEnd) {
   EXPECT_EQ(run.num_measured, 200);
   EXPECT_LT(run.ate->rmse_m, 0.04);
   EXPECT_LT(run.rpe->rotation_median_deg, 3.0);
-  EXPECT_EQ(run.loops.num_wrong, 0);
+  EXPECT_EQ(run.loops.num_false, 0);
 }
 
 // Two laps through a corridor of near-identical doors, from pictures alone; the best peer closes 43
@@ -88,8 +88,8 @@ TEST_F(Golden, TheSecondLapThroughTheCorridorIsFoundFromPicturesAlone) {
   const run::RunOutcome outcome = run::run_recognition(std::move(source), config);
   const auto found =
       *run::evaluate_recognition({0, outcome.matches, outcome.accepted, 19}, truth).accepted;
-  EXPECT_GE(found.num_right, 42);
-  EXPECT_EQ(found.num_wrong, 0);
+  EXPECT_GE(found.num_true, 42);
+  EXPECT_EQ(found.num_false, 0);
 }
 
 // Figures of the better published HOG row, docs/evaluation.md.

@@ -58,7 +58,7 @@ def tum(folder, num_frames=NUM_FRAMES, step_px=STEP_PX):
     write(folder, "groundtruth.txt", "# stamp x y z qx qy qz qw\n" + "".join(truth))
     write(folder, "camera.txt", CAMERA)
     write(folder, "same_place.txt", places_text(num_frames))
-    write(folder, "impostors.csv", "query,match\n5,0\n")
+    write(folder, "aliased_pairs.csv", "query,match\n5,0\n")
 
 
 def places_text(num_frames):

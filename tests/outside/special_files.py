@@ -56,7 +56,7 @@ INPUTS = [
     ("tum", "depth.txt", RUN, True),
     ("tum", "groundtruth.txt", RUN, False),
     ("tum", "same_place.txt", LOOPS, False),
-    ("tum", "impostors.csv", LOOPS, False),
+    ("tum", "aliased_pairs.csv", LOOPS, False),
     ("tum", "rgb/1.000000.png", RUN, False),
     ("tum", "rgb/1.300000.png", RUN, False),
     ("tum", "depth/1.000000.png", RUN, False),

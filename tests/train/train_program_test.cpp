@@ -71,7 +71,7 @@ TEST_F(TrainProgram, StoppedByKillOrCtrlCGoesOnToTheSameBytes) {
   EXPECT_FALSE(std::filesystem::exists(path("killed.onnx")));
   const Outcome resumed = run(to("killed.onnx"));
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_THAT(resumed.out, HasSubstr("going on after epoch"));
+  EXPECT_THAT(resumed.out, HasSubstr("resuming after epoch"));
   EXPECT_TRUE(core::read_file(path("killed.onnx")) == core::read_file(path("whole.onnx")));
 
   EXPECT_EQ(stop_after_two("stopped.onnx", "INT"), 130);

@@ -2,10 +2,9 @@
 
 namespace samewhere::core {
 
-// From now on the calling thread, and those that it starts, give way to all others of the machine
-// where there are fewer processors than work: for what is waited for late, if at all. That it
-// asks again changes nothing. Does nothing where the system has no priorities of threads, or
-// refuses.
+// Lowers the scheduling priority of the calling thread and of those that it starts, for work whose
+// result is needed late, if at all. Repeated calls change nothing. Does nothing where the system
+// has no thread priorities, or refuses.
 void work_in_background();
 
 }  // namespace samewhere::core

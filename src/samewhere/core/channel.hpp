@@ -12,8 +12,8 @@
 namespace samewhere::core {
 
 // A bounded queue between two threads. The writer waits while it is full, the reader while it is
-// empty. After close() the reader gets what is left, then nothing; a writer is told that nobody
-// listens.
+// empty. After close() the reader gets what is left, then nothing; a writer is told that the
+// channel is closed.
 template <class T>
 class Channel {
  public:
@@ -31,7 +31,7 @@ class Channel {
     return true;
   }
 
-  // Takes the place of what waits, so that a reader gets the newest and the writer never waits.
+  // Replaces a waiting message, so that the reader gets the newest and the writer never waits.
   // False if the channel is closed.
   bool send_newest(T message) {
     const std::lock_guard lock(mutex_);

@@ -28,7 +28,7 @@ TEST(Channel, WhatIsLeftArrivesAfterItIsClosedAndThenNothing) {
   EXPECT_TRUE(channel.send(1));
   EXPECT_TRUE(channel.send(2));
   channel.close();
-  EXPECT_FALSE(channel.send(3)) << "nobody listens to a closed channel";
+  EXPECT_FALSE(channel.send(3)) << "a closed channel takes no message";
   EXPECT_EQ(channel.receive(), 1);
   EXPECT_EQ(channel.receive(), 2);
   EXPECT_EQ(channel.receive(), std::nullopt);
@@ -46,14 +46,14 @@ TEST(Channel, TheNewestTakesThePlaceOfWhatWaits) {
   EXPECT_EQ(channel.receive(), std::nullopt);
 }
 
-TEST(Channel, AWriterThatWaitsForItsTimeIsToldAtOnceThatNobodyListens) {
+TEST(Channel, AWaitingWriterIsToldAtOnceThatTheChannelIsClosed) {
   Channel<int> channel(1);
   const auto start = std::chrono::steady_clock::now();
   EXPECT_TRUE(channel.is_open_for(0.02));
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(20));
   Channel<bool> is_told(1);
   WorkerThread writer([&] { is_told.send(channel.is_open_for(3600.0)); });
-  EXPECT_TRUE(channel.send(1)) << "who waits keeps nobody else";
+  EXPECT_TRUE(channel.send(1)) << "a waiting writer blocks no other";
   channel.close();
   EXPECT_EQ(is_told.receive(), false);
 }
@@ -113,7 +113,7 @@ TEST(WorkerThread, AnExceptionComesOutOfJoinOnce) {
 }
 
 TEST(WorkerThread, DestructionWithoutJoinSwallowsTheException) {
-  EXPECT_NO_THROW(WorkerThread([] { throw InputError("nobody asks"); }));
+  EXPECT_NO_THROW(WorkerThread([] { throw InputError("not asked for"); }));
 }
 
 TEST(SourceThread, SendsWhatThereIsAndClosesTheChannel) {
@@ -179,7 +179,7 @@ TEST(StageThread, AnExceptionEndsTheNeighboursAndComesOutOfJoin) {
   EXPECT_THROW(stage.join(), InputError);
 }
 
-TEST(StageThread, DestructionDoesNotWaitForAMessageThatNobodySends) {
+TEST(StageThread, DestructionDoesNotWaitForAMessageThatIsNeverSent) {
   Channel<int> in(1);
   Channel<int> out(1);
   {

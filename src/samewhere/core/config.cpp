@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -58,6 +60,10 @@ class Reader : public PathVisitor {
   }
 
   void finish() { check_keys(); }
+
+  void renamed(std::string_view old_path, std::string_view path) override {
+    renamed_.emplace(old_path, path);
+  }
 
  protected:
   void value(std::string_view name, bool& field, const FieldInfo& /*info*/) override {
@@ -158,12 +164,21 @@ class Reader : public PathVisitor {
     for (const auto& entry : nodes_.back()) {
       const std::string key = entry.first.Scalar();
       const auto& known = known_.back();
-      if (std::find(known.begin(), known.end(), key) == known.end())
-        throw InputError(fmt::format("unknown key {}{}; expected one of: {}", path(key),
-                                     place(entry.first), joined(known)));
+      if (std::find(known.begin(), known.end(), key) == known.end()) fail_unknown(entry.first);
       if (!seen.insert(key).second)
         throw InputError(path(key) + " is given twice" + place(entry.first));
     }
+  }
+
+  [[noreturn]] void fail_unknown(const YAML::Node& key) const {
+    const std::string name = path(key.Scalar());
+    const auto former = renamed_.find(name);
+    if (former == renamed_.end())
+      throw InputError(fmt::format("unknown key {}{}; expected one of: {}", name, place(key),
+                                   joined(known_.back())));
+    if (former->second.empty())
+      throw InputError(fmt::format("{} is no setting any more{}", name, place(key)));
+    throw InputError(fmt::format("{} is now {}{}", name, former->second, place(key)));
   }
 
   std::string place(const YAML::Node& node) const {
@@ -174,39 +189,77 @@ class Reader : public PathVisitor {
   std::string origin_;
   std::vector<YAML::Node> nodes_;
   std::vector<std::vector<std::string_view>> known_;
+  std::map<std::string, std::string, std::less<>> renamed_;  // old path to new, "" if removed
 };
 
 // Writes one line per field; derived classes say how.
 class Lister : public PathVisitor {
  public:
+  explicit Lister(Listed listed) : listed_(listed) {}
+
   const std::string& text() const { return text_; }
 
  protected:
   virtual void line(std::string_view name, const std::string& value, const FieldInfo& info) = 0;
+  virtual void heading(std::string_view name, const FieldInfo& info) = 0;
 
   void value(std::string_view name, bool& field, const FieldInfo& info) override {
-    line(name, field ? "true" : "false", info);
+    list(name, field ? "true" : "false", info);
   }
   void value(std::string_view name, int& field, const FieldInfo& info) override {
-    line(name, std::to_string(field), info);
+    list(name, std::to_string(field), info);
   }
   void value(std::string_view name, double& field, const FieldInfo& info) override {
-    line(name, number_text(field), info);
+    list(name, number_text(field), info);
   }
   void value(std::string_view name, std::string& field, const FieldInfo& info) override {
-    line(name, in_quotes(field), info);
+    list(name, in_quotes(field), info);
   }
   void choice(std::string_view name, int& field, const FieldInfo& info) override {
-    line(name, std::string(info.choices.at(static_cast<std::size_t>(field))), info);
+    list(name, std::string(info.choices.at(static_cast<std::size_t>(field))), info);
   }
-  void leave() override { sections_.pop_back(); }
+
+  // The heading is written with the section's first line: a section may have none that is listed.
+  bool enter(std::string_view name, const FieldInfo& info) override {
+    if (!info.is_used) return false;
+    sections_.emplace_back(name);
+    headings_.push_back({std::string(name), info, false});
+    return true;
+  }
+  void leave() override {
+    sections_.pop_back();
+    headings_.pop_back();
+  }
 
   std::string text_;
+
+ private:
+  struct Heading {
+    std::string name;
+    FieldInfo info;
+    bool is_written = false;
+  };
+
+  void list(std::string_view name, const std::string& value, const FieldInfo& info) {
+    bool is_expert = info.is_expert;
+    for (const Heading& heading : headings_) is_expert |= heading.info.is_expert;
+    if (listed_ == (is_expert ? Listed::kBasic : Listed::kExpert)) return;
+    sections_.clear();  // as each heading is written, those above it are open
+    for (Heading& heading : headings_) {
+      if (!heading.is_written) this->heading(heading.name, heading.info);
+      heading.is_written = true;
+      sections_.push_back(heading.name);
+    }
+    line(name, value, info);
+  }
+
+  Listed listed_;
+  std::vector<Heading> headings_;  // of the sections that are open
 };
 
 class YamlLister : public Lister {
  public:
-  explicit YamlLister(bool with_help) : with_help_(with_help) {}
+  YamlLister(bool with_help, Listed listed) : Lister(listed), with_help_(with_help) {}
 
  protected:
   void line(std::string_view name, const std::string& value, const FieldInfo& info) override {
@@ -218,11 +271,9 @@ class YamlLister : public Lister {
     text_ += start + "\n";
   }
 
-  bool enter(std::string_view name, const FieldInfo& info) override {
+  void heading(std::string_view name, const FieldInfo& info) override {
     if (with_help_) text_ += fmt::format("\n{}# {}\n", indent(), info.help);
     text_ += fmt::format("{}{}:\n", indent(), name);
-    sections_.emplace_back(name);
-    return true;
   }
 
  private:
@@ -232,6 +283,9 @@ class YamlLister : public Lister {
 };
 
 class TableLister : public Lister {
+ public:
+  using Lister::Lister;
+
  protected:
   void line(std::string_view name, const std::string& value, const FieldInfo& info) override {
     if (!is_table_open_) text_ += "\n| key | default | range | meaning |\n|---|---|---|---|\n";
@@ -240,11 +294,9 @@ class TableLister : public Lister {
         fmt::format("| `{}` | `{}` | {} | {} |\n", path(name), value, range_text(info), info.help);
   }
 
-  bool enter(std::string_view name, const FieldInfo& info) override {
+  void heading(std::string_view name, const FieldInfo& info) override {
     text_ += fmt::format("\n## {}\n\n{}.\n", path(name), info.help);
-    sections_.emplace_back(name);
     is_table_open_ = false;
-    return true;
   }
 
  private:
@@ -294,14 +346,14 @@ void assign_field(void* config, FieldWalk walk, const std::string& assignment,
   reader.finish();
 }
 
-std::string fields_as_yaml(void* config, FieldWalk walk, bool with_help) {
-  YamlLister lister(with_help);
+std::string fields_as_yaml(void* config, FieldWalk walk, bool with_help, Listed listed) {
+  YamlLister lister(with_help, listed);
   walk(config, lister);
   return lister.text();
 }
 
-std::string fields_as_table(void* config, FieldWalk walk) {
-  TableLister lister;
+std::string fields_as_table(void* config, FieldWalk walk, Listed listed) {
+  TableLister lister(listed);
   walk(config, lister);
   return lister.text();
 }

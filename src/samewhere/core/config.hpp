@@ -9,12 +9,14 @@
 
 namespace samewhere::core {
 
-// What a person must know about a setting beside its name and default.
+// Description of a setting beside its name and default.
 struct FieldInfo {
-  std::string_view help;  // meaning and unit, half a line
+  std::string_view help;  // meaning, unit and, where there is one, the source; half a line
   std::optional<double> min = std::nullopt;
   std::optional<double> max = std::nullopt;
   std::vector<std::string_view> choices = {};  // names of an enum's values, in their order
+  bool is_expert = false;  // of a field or section: not in the short documentation
+  bool is_used = true;     // of a section: false where this run has no use for it; then not written
 };
 
 // Walks over the fields of a config struct. Every folder with settings has a `struct Config` and
@@ -33,6 +35,10 @@ class FieldVisitor {
   FieldVisitor(const FieldVisitor&) = delete;
   FieldVisitor& operator=(const FieldVisitor&) = delete;
   virtual ~FieldVisitor() = default;
+
+  // A key of an earlier version, as a dotted path, and its name now (empty: removed). The reader
+  // refuses the old key and names the new one. Listed before the fields.
+  virtual void renamed(std::string_view /*old_path*/, std::string_view /*path*/) {}
 
   template <class T>
   void operator()(std::string_view name, T& field, const FieldInfo& info) {
@@ -71,8 +77,11 @@ void read_fields(void* config, FieldWalk walk, const std::string& yaml, const st
 // read_fields.
 void assign_field(void* config, FieldWalk walk, const std::string& assignment,
                   const std::string& origin);
-std::string fields_as_yaml(void* config, FieldWalk walk, bool with_help);
-std::string fields_as_table(void* config, FieldWalk walk);
+
+// Of a listing: all settings, those of the short documentation, or the others.
+enum class Listed { kAll, kBasic, kExpert };
+std::string fields_as_yaml(void* config, FieldWalk walk, bool with_help, Listed listed);
+std::string fields_as_table(void* config, FieldWalk walk, Listed listed);
 
 template <class Config>
 void walk_fields(void* config, FieldVisitor& visit) {
@@ -102,14 +111,14 @@ void set_config(Config& config, const std::string& assignment) {
 // YAML that read_config reads back to the same values; with_help adds meaning and range as
 // comments.
 template <class Config>
-std::string config_as_yaml(Config config, bool with_help = false) {
-  return fields_as_yaml(&config, &walk_fields<Config>, with_help);
+std::string config_as_yaml(Config config, bool with_help = false, Listed listed = Listed::kAll) {
+  return fields_as_yaml(&config, &walk_fields<Config>, with_help, listed);
 }
 
 // Markdown: one table per section with key, default, range and meaning.
 template <class Config>
-std::string config_as_table(Config config) {
-  return fields_as_table(&config, &walk_fields<Config>);
+std::string config_as_table(Config config, Listed listed = Listed::kAll) {
+  return fields_as_table(&config, &walk_fields<Config>, listed);
 }
 
 }  // namespace samewhere::core

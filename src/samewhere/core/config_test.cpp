@@ -242,5 +242,63 @@ TEST(Config, TheTableAndTheHelpNameEveryKeyRangeAndMeaning) {
   EXPECT_THAT(yaml, HasSubstr("search: exact"));
 }
 
+struct Method {
+  double damping = 0.5;
+};
+
+struct Solver {
+  int iterations = 10;
+  double tolerance = 1e-3;
+  Method method;
+  Sampling unused;
+};
+
+void visit_fields(Method& c, FieldVisitor& visit) {
+  visit("damping", c.damping, {.help = "of a step"});
+}
+
+void visit_fields(Solver& c, FieldVisitor& visit) {
+  visit.renamed("steps", "iterations");
+  visit.renamed("method.gain", "method.damping");
+  visit.renamed("verbose", "");
+  visit("iterations", c.iterations, {.help = "at most"});
+  visit("tolerance", c.tolerance, {.help = "of the cost", .is_expert = true});
+  visit("method", c.method, {.help = "Method", .is_expert = true});
+  visit("unused", c.unused, {.help = "Not in this run", .is_used = false});
+}
+
+std::string solver_error_of(const std::string& yaml) {
+  try {
+    Solver solver;
+    read_config(solver, yaml, "mine.yaml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "(no InputError)";
+}
+
+TEST(Config, AKeyOfAnEarlierVersionIsRefusedWithItsNameNow) {
+  EXPECT_EQ(solver_error_of("steps: 3"), "steps is now iterations  (mine.yaml, line 1)");
+  EXPECT_EQ(solver_error_of("iterations: 2\nmethod:\n  gain: 1"),
+            "method.gain is now method.damping  (mine.yaml, line 3)");
+  EXPECT_EQ(solver_error_of("verbose: 3"), "verbose is no setting any more  (mine.yaml, line 1)");
+  EXPECT_THAT(solver_error_of("gain: 3"), HasSubstr("unknown key gain"));
+}
+
+TEST(Config, ExpertSettingsAreListedApart) {
+  EXPECT_EQ(config_as_yaml(Solver{}, false, Listed::kBasic), "iterations: 10\n");
+  EXPECT_EQ(config_as_yaml(Solver{}, false, Listed::kExpert),
+            "tolerance: 0.001\nmethod:\n  damping: 0.5\n");
+  EXPECT_EQ(config_as_yaml(Solver{}),
+            "iterations: 10\ntolerance: 0.001\nmethod:\n  damping: 0.5\n");
+  EXPECT_THAT(config_as_table(Solver{}, Listed::kBasic), Not(HasSubstr("## method")));
+  EXPECT_THAT(config_as_table(Solver{}, Listed::kExpert), HasSubstr("## method"));
+}
+
+TEST(Config, ASectionWithoutUseIsReadButNotWritten) {
+  EXPECT_EQ(solver_error_of("unused:\n  num_draws: 3"), "(no InputError)");
+  EXPECT_THAT(config_as_yaml(Solver{}), Not(HasSubstr("unused")));
+}
+
 }  // namespace
 }  // namespace samewhere::core

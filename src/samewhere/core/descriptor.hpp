@@ -7,9 +7,9 @@
 
 namespace samewhere::core {
 
-// What a whole view looks like, as a vector of unit length (all zero for a view without any
-// structure, such as a black image). Descriptors compare only if they come from the same describer:
-// `describer_checksum` says which.
+// Image descriptor: a vector of unit length (all zero for an image without structure, such as a
+// black one). Descriptors are comparable only if they come from the same describer, named by
+// `describer_checksum`.
 struct Descriptor {
   FrameId frame;
   std::vector<float> unit;

@@ -7,10 +7,9 @@
 
 namespace samewhere::core {
 
-// A file that is written whole, down to the disk, before it gets its name: whatever ends the
-// program, the name stands for the old content or for the new one. Until then it has no name at
-// all, so that nothing is left behind, or where the file system cannot do that, one that no other
-// program has (NAME.partial-PROCESS-NUMBER beside it).
+// A file that gets its name only after it is completely written and synced: at any time the name
+// refers to the old or to the new content. Until then the file has no name at all or, where the
+// file system lacks that, a unique temporary one (NAME.partial-PROCESS-NUMBER beside it).
 class Draft {
  public:
   // All of these throw InputError naming the path and the system's reason (no space left).

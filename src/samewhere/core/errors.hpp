@@ -15,7 +15,7 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message);
 };
 
-// A broken promise of our own code: a bug. Exit code 3.
+// A broken contract in our own code: a bug. Exit code 3.
 class ContractError : public std::logic_error {
  public:
   using std::logic_error::logic_error;

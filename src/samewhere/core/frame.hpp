@@ -20,7 +20,7 @@ struct ImuSample {
   Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();
 };
 
-// What the sensors saw at one moment. Pictures are shared, never written after the frame is made.
+// Sensor data of one moment. Images are shared and never written after the frame is made.
 struct Frame {
   FrameId id;
   double stamp_s = 0.0;

@@ -8,9 +8,8 @@
 
 namespace samewhere::core {
 
-// A 64-bit id that cannot be mixed up with the id of another kind of thing. The session sits in the
-// high 16 bits, so that maps made in different sessions merge without renumbering. A default id is
-// invalid.
+// A 64-bit id of one kind of object; ids of different kinds do not mix. The session is in the high
+// 16 bits, so that maps of different sessions merge without renumbering. A default id is invalid.
 template <class Tag>
 class Id {
  public:

@@ -14,8 +14,8 @@
 
 namespace samewhere::core {
 
-// A stage as its only customer sees it: messages go in, answers come out, both in order. How many
-// answers a message has, the two agree on.
+// The caller's side of a stage: messages go in, answers come out, both in order. Stage and caller
+// agree on the number of answers per message.
 template <class Message, class Answer>
 class Link {
  public:
@@ -29,12 +29,12 @@ class Link {
   virtual Answer receive() = 0;
   // Ends the stage when it has done all that was sent. Throws what the stage threw.
   virtual void finish() = 0;
-  // Processor time of the stage that is not the customer's own. After finish().
+  // Processor time of the stage outside of the caller's thread. After finish().
   virtual double processor_ms() const = 0;
 };
 
-// The stage works on the customer's thread: all that a message asks for is done when send()
-// returns, and the answers wait until they are asked for.
+// The stage runs in the caller's thread: send() returns when the message is processed; answers wait
+// until they are received.
 template <class Message, class Answer>
 class DirectLink : public Link<Message, Answer> {
  public:
@@ -63,8 +63,8 @@ class DirectLink : public Link<Message, Answer> {
 using Dawdle = std::function<void(std::uint64_t number)>;
 
 // The stage works in a thread of its own. No more than `capacity` messages are sent whose answers
-// were not received: then nobody ever waits for room. The destructor waits until the stage has done
-// what was sent; nobody hears its answers.
+// were not received, so that no side ever waits for room. The destructor waits until the stage has
+// processed what was sent; its answers are dropped.
 template <class Message, class Answer>
 class ThreadLink : public Link<Message, Answer> {
  public:

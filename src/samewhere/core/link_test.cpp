@@ -57,7 +57,7 @@ TEST(Link, AStageGoesOnAfterItsAnswerAndIsDoneWhenItIsFinished) {
   }
 }
 
-TEST(Link, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
+TEST(Link, AnExceptionOfTheStageComesOutAndNoSideWaitsForever) {
   for (const auto& link : both_links(fail_at_3)) {
     const auto talk = [&] {
       for (int i = 0; i < 1000; ++i) {
@@ -69,7 +69,7 @@ TEST(Link, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
   }
   ThreadLink<int, std::string> link(fail_at_3, 1, {});
   link.send(3);
-  EXPECT_THROW(link.finish(), std::runtime_error) << "nobody asked for the answer";
+  EXPECT_THROW(link.finish(), std::runtime_error) << "the answer was not received";
 }
 
 TEST(Link, AStageThatHasEndedIsAskedNoMore) {
@@ -82,7 +82,7 @@ TEST(Link, AStageThatHasEndedIsAskedNoMore) {
   EXPECT_THROW(direct.receive(), ContractError) << "in turn this would wait forever";
 }
 
-TEST(Link, DestructionWithAnswersThatNobodyTookDoesNotHang) {
+TEST(Link, DestructionWithUnreceivedAnswersDoesNotHang) {
   const TestLink::Serve busy = [](int /*message*/, const TestLink::Reply& reply) {
     for (int i = 0; i < 100; ++i) reply("more than there is room for");
   };

@@ -6,11 +6,11 @@
 
 namespace samewhere::core {
 
-// A piece of a mapped file: it may leave memory at any moment, and comes back where it is read.
-// When it goes its place on the disk is free again.
+// A piece of a mapped file: it can be paged out at any time and returns when it is read. Its
+// destructor frees its space on the disk.
 class PagedBlock {
  public:
-  // `file` keeps the bytes mapped; they begin at a page, and nobody else has any of their pages.
+  // `file` keeps the bytes mapped; they begin at a page and share no page with other blocks.
   PagedBlock(std::shared_ptr<const void> file, std::span<std::byte> bytes)
       : file_(std::move(file)), bytes_(bytes) {}
   PagedBlock(const PagedBlock&) = delete;
@@ -26,10 +26,9 @@ class PagedBlock {
   std::span<std::byte> bytes_;
 };
 
-// Hands out blocks of files without a name in the folder for temporary files ($TMPDIR, otherwise
-// /var/tmp). Space is reserved on the disk before it is handed out, so that a full disk is told
-// here and not where somebody writes. A file goes when its last block does, a block's pages when it
-// does.
+// Allocates blocks in unnamed files in the folder for temporary files ($TMPDIR, otherwise
+// /var/tmp). Disk space is reserved at allocation, so that a full disk is reported here and not by
+// a later write. A file is removed with its last block, a block's pages with the block.
 class PagedMemory {
  public:
   // `size` > 0 bytes, beginning at a page. Nothing if the folder cannot be written or is full; then

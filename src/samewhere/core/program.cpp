@@ -62,7 +62,7 @@ int guarded(const std::string& name, const std::function<int()>& work) {
   } catch (const Interrupted&) {
     return kInterruptedExit;
   } catch (const std::exception& error) {
-    return complain(name, std::string("this is a bug of ours: ") + error.what(), kBrokenPromise);
+    return complain(name, std::string("this is a bug: ") + error.what(), kBrokenPromise);
   }
 }
 

@@ -5,9 +5,8 @@
 
 namespace samewhere::core {
 
-// A line on stderr that says how far long work has come. On a terminal it is redrawn in place;
-// elsewhere (a log file) it is printed at every tenth. Silent for work that is done within half a
-// second.
+// A progress line on stderr. On a terminal it is redrawn in place; elsewhere (a log file) it is
+// printed at every tenth. Silent for work that takes less than half a second.
 class Progress {
  public:
   // Quiet: without a line, for a command that was asked to print none.

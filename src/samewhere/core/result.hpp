@@ -4,7 +4,7 @@
 
 namespace samewhere {
 
-// For functions with exactly two answers: a value, or the reason why there is none.
+// For functions with two outcomes: a value, or the reason why there is none.
 template <class T, class E>
 using Result = tl::expected<T, E>;
 

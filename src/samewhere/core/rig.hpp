@@ -48,8 +48,8 @@ struct KannalaBrandt {
 // models have been turned into those of an ideal pinhole.
 using Camera = std::variant<PinholeRadtan, KannalaBrandt>;
 
-// Where an inertial unit sits and how it errs: densities of its white noise and of the random walk
-// of its biases; 0: not known.
+// Extrinsic calibration and noise model of an inertial unit: densities of the white noise and of
+// the random walk of the biases; 0: not known.
 struct Imu {
   Rigid3 body_from_imu;
   double gyroscope_noise_rad_s_sqrt_hz = 0.0;
@@ -59,17 +59,17 @@ struct Imu {
 };
 
 // The sensors of one body. Poses are body poses; camera i hangs on it by body_from_camera[i]. No
-// camera at all means that nobody told us the calibration: recognition works then, poses do not.
+// camera means that the calibration is unknown: recognition works then, poses do not.
 struct Rig {
   std::vector<Camera> cameras;
   std::vector<Rigid3> body_from_camera;
-  // Camera 0 as it sits on the body, where its pictures were rectified, that is turned, after they
-  // were taken; none: they were not, and body_from_camera[0] says it.
+  // Camera 0 before rectification rotated its images; none: not rectified, body_from_camera[0]
+  // holds.
   std::optional<Rigid3> body_from_taken_camera;
   std::optional<Imu> imu;
 
   bool is_calibrated() const { return !cameras.empty(); }
-  // Camera 0 as its poses are told to the outside. Only where there is a camera.
+  // Extrinsics of camera 0 as its poses are exported. Requires a camera.
   const Rigid3& body_from_told_camera() const {
     return body_from_taken_camera ? *body_from_taken_camera : body_from_camera.front();
   }

@@ -11,7 +11,7 @@ namespace samewhere::core {
 struct SourceInfo {
   std::string name;        // short, for output folders and titles
   std::string format;      // "TUM RGB-D", "7-Scenes", ...
-  int num_frames = 0;      // how many next() will give; 0: nobody knows
+  int num_frames = 0;      // how many next() will give; 0: unknown
   bool has_depth = false;  // whether any frame comes with depth
   int num_cameras = 1;     // images of a frame
   bool is_calibrated = false;

@@ -20,9 +20,9 @@ inline int num_hardware_threads() {
 }
 
 // A thread that runs one function to its end. Throws InputError if the system refuses one more. An
-// exception in the function comes out of join(). The destructor joins and swallows: whoever wants
-// the exception calls join() first. Whoever owns channels that the function waits on closes them
-// first.
+// exception in the function comes out of join(). The destructor joins and swallows it: call
+// join() first to receive the exception. The owner of channels that the function waits on closes
+// them first.
 class WorkerThread {
  public:
   explicit WorkerThread(std::function<void()> work)
@@ -59,7 +59,7 @@ class WorkerThread {
   std::thread thread_;  // last: it starts when everything above is ready
 };
 
-// The first stage of a chain: sends what `next` gives until it gives nothing or nobody listens,
+// The first stage of a chain: sends what `next` gives until it gives nothing or the channel closes,
 // then closes `out`, and so if `next` throws, which comes out of join(). The destructor closes it
 // too.
 template <class Out>
@@ -92,7 +92,7 @@ class SourceThread {
 // Runs a single-threaded stage between two channels: out = stage(in) until `in` is closed, then
 // closes `out`. If the stage throws, both channels are closed, so that its neighbours end too, and
 // join() throws what the stage threw. The destructor closes both channels as well: an exception
-// that unwinds the owner must not wait for messages that nobody sends any more.
+// that unwinds the owner must not wait for messages that are never sent.
 template <class In, class Out>
 class StageThread {
  public:

@@ -19,8 +19,8 @@ struct TimingSummary {
 
 TimingSummary summarize(std::vector<double> durations_ms);
 
-// Wall time by stage, and the processor time of the thread that spent it. Never read by an
-// algorithm: it ends in timing.json only.
+// Wall time by stage, and CPU time of the thread of the stage. Not read by any algorithm: output in
+// timing.json only.
 class Timings {
  public:
   void add(const std::string& stage, double duration_ms, double processor_ms = 0.0) {

@@ -72,7 +72,7 @@ TEST(Timing, TellsWhatATimeWasBeside) {
   own.add_span("track", 10.0, 11.0, 0.5);  // ends as the work begins
   own.add_span("track", 10.0, 12.0, 0.5);
   own.add_span("track", 12.0, 15.0, 0.5);  // within
-  own.add("track", 7.0);                   // nobody knows when
+  own.add("track", 7.0);                   // at an unknown time
   own.add_span("track", 19.0, 23.0, 0.5);
   own.add_span("track", 20.0, 25.0, 0.5);  // begins as it ends
   other.add_span("bundle", 11.0, 20.0, 1.0);

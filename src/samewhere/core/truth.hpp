@@ -19,7 +19,7 @@ struct StampedPose {
 
 using Trajectory = std::vector<StampedPose>;  // stamps ascend strictly
 
-// How the body moves at one moment, and by how much its inertial unit errs then, noise apart.
+// Velocity of the body and biases of its inertial unit at one moment.
 struct InertialTruth {
   double stamp_s = 0.0;
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();             // of the body, in the world
@@ -57,17 +57,16 @@ struct FrameSpan {
   friend bool operator==(const FrameSpan&, const FrameSpan&) = default;
 };
 
-// What is known to be true about a source; each part may be missing.
+// Ground truth of a source; each part may be missing.
 struct Truth {
   Trajectory trajectory;                // empty: not known
   std::vector<InertialTruth> inertial;  // at the stamps of the trajectory; empty: not known
   std::optional<PlaceTruthMatrix> places;
-  // Frames of different places that look alike by construction, as only a made-up building can
-  // tell; ascending, no pair twice. Empty: none, or not known.
-  std::vector<FramePair> impostors;
-  // Stays where the camera has been before, each with at least one moment at which a person could
-  // tell that it is this place and no other, as only a made-up building knows; ascending. Nothing:
-  // not known.
+  // Aliased pairs: frames of different places with similar appearance, known by construction of a
+  // rendered building; ascending, no pair twice. Empty: none, or not known.
+  std::vector<FramePair> aliased_pairs;
+  // Revisits of an earlier place, each with at least one frame that shows it unambiguously, known
+  // by construction of a rendered building; ascending. Nothing: not known.
   std::optional<std::vector<FrameSpan>> revisits;
 };
 

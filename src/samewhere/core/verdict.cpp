@@ -5,6 +5,22 @@
 
 namespace samewhere::core {
 
+std::string_view name_of(Origin origin) {
+  switch (origin) {
+    case Origin::kRetrieved:
+      return "retrieved";
+    case Origin::kVisualWords:
+      return "visual words";
+    case Origin::kNeighbour:
+      return "neighbour";
+    case Origin::kPredicted:
+      return "predicted";
+    case Origin::kRelocalization:
+      return "relocalization";
+  }
+  throw ContractError("promise broken: every Origin has a name");
+}
+
 std::string_view name_of(Refusal refusal) {
   switch (refusal) {
     case Refusal::kSimilarity:
@@ -19,12 +35,12 @@ std::string_view name_of(Refusal refusal) {
       return "spread";
     case Refusal::kPose:
       return "pose";
-    case Refusal::kAgreement:
-      return "agreement";
+    case Refusal::kConsistency:
+      return "consistency";
     case Refusal::kOdometry:
       return "odometry";
-    case Refusal::kRival:
-      return "rival";
+    case Refusal::kCompeting:
+      return "competing";
     case Refusal::kSequence:
       return "sequence";
     case Refusal::kGraph:
@@ -58,15 +74,16 @@ std::string reason_for(const LoopClosure& loop) {
   const Evidence& evidence = loop.evidence;
   std::string reason = loop.is_by_hand ? "accepted by hand: " : "";
   if (!evidence.geometry) return reason + fmt::format("similarity {:.3f}", evidence.similarity);
-  reason += fmt::format("{} features agree on one geometry, reprojection error {:.2f} px",
+  reason += fmt::format("{} inliers of one geometry, reprojection error {:.2f} px",
                         evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
   if (evidence.sequence)
-    reason += fmt::format("; {} views in a row go on to match", evidence.sequence->num_views);
-  if (loop.overruled.is_valid() && evidence.rival && evidence.rival->gain)
+    reason += fmt::format("; {} consecutive views match", evidence.sequence->num_views);
+  if (loop.overruled.is_valid() && evidence.competing_loop && evidence.competing_loop->gain)
     reason += fmt::format(
-        "; the last loop has put the camera where frame {} was taken, {:.2f} m from here, but "
-        "odometry speaks against the first that says so (gain {:.1f})",
-        evidence.rival->frame.index(), evidence.rival->apart_m, *evidence.rival->gain);
+        "; replaces the competing hypothesis of the last loop, the place of frame {} at {:.2f} m: "
+        "odometry supports this loop rather than its first one (gain {:.1f})",
+        evidence.competing_loop->frame.index(), evidence.competing_loop->apart_m,
+        *evidence.competing_loop->gain);
   return reason;
 }
 

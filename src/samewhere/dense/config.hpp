@@ -23,48 +23,48 @@ struct Config {
 
 inline void visit_surfaces(Config& config, core::FieldVisitor& visit) {
   visit("step_px", config.step_px,
-        {.help = "every so many rows and columns of a depth image are used", .min = 1, .max = 64});
+        {.help = "sampling step over the depth image, pixels", .min = 1, .max = 64});
   visit("min_depth_m", config.min_depth_m,
-        {.help = "nearer depth is not used, metres", .min = 0.01, .max = 100.0});
+        {.help = "nearest depth used, metres", .min = 0.01, .max = 100.0});
   visit("max_depth_m", config.max_depth_m,
-        {.help = "farther depth is not used, metres", .min = 0.1, .max = 100.0});
+        {.help = "farthest depth used, metres", .min = 0.1, .max = 100.0});
   visit("max_jump_ratio", config.max_jump_ratio,
-        {.help = "a pixel whose neighbour's depth differs by this share lies on an edge and is not "
-                 "used",
+        {.help = "pixels with a relative depth step above this to a neighbour are not used",
          .min = 0.001,
          .max = 10.0});
   visit("voxel_m", config.voxel_m,
-        {.help = "edge of the cloud's voxels, metres", .min = 0.001, .max = 10.0});
+        {.help = "edge of the voxels of the point cloud, metres", .min = 0.001, .max = 10.0});
   visit("max_voxels", config.max_voxels,
-        {.help = "more voxels (100 bytes each) and their edge doubles", .min = 1000, .max = 1e9});
-  visit("min_views", config.min_views,
-        {.help = "voxels that fewer keyframes saw are no points of the cloud",
-         .min = 1,
-         .max = 1000});
+        {.help = "largest number of voxels (100 bytes each); above, the edge doubles",
+         .min = 1000,
+         .max = 1e9});
+  visit(
+      "min_views", config.min_views,
+      {.help = "least keyframes that observed a voxel of the point cloud", .min = 1, .max = 1000});
 }
 
 inline void visit_maps(Config& config, core::FieldVisitor& visit) {
   visit("octree_voxel_m", config.octree_voxel_m,
-        {.help = "edge of the octree's smallest voxels, metres", .min = 0.005, .max = 10.0});
+        {.help = "edge of the smallest octree voxels, metres", .min = 0.005, .max = 10.0});
   visit("grid_cell_m", config.grid_cell_m,
-        {.help = "edge of the grid's cells, metres", .min = 0.01, .max = 10.0});
+        {.help = "edge of the occupancy grid cells, metres", .min = 0.01, .max = 10.0});
   visit("max_scan_points", config.max_scan_points,
-        {.help = "points (12 bytes each) kept for the grid; more, and every other keyframe goes",
+        {.help = "largest number of points (12 bytes each) for the grid; above, every other "
+                 "keyframe is dropped",
          .min = 1000,
          .max = 1e9});
   visit("min_obstacle_m", config.min_obstacle_m,
-        {.help = "what stands lower above the floor is no obstacle, metres",
-         .min = 0.01,
-         .max = 10.0});
-  visit("max_obstacle_m", config.max_obstacle_m,
-        {.help = "what hangs higher is no obstacle, metres", .min = 0.02, .max = 100.0});
+        {.help = "least height of an obstacle above the floor, metres", .min = 0.01, .max = 10.0});
+  visit(
+      "max_obstacle_m", config.max_obstacle_m,
+      {.help = "largest height of an obstacle above the floor, metres", .min = 0.02, .max = 100.0});
   visit("max_floor_tilt_rad", config.max_floor_tilt_rad,
-        {.help = "angle between the floor's normal and the mean of what is up in the pictures, "
-                 "radians",
+        {.help = "largest angle between the floor's normal and the mean up direction of the "
+                 "images, radians",
          .min = 0.01,
          .max = 1.5});
   visit("min_floor_m2", config.min_floor_m2,
-        {.help = "a smaller surface is no floor, square metres", .min = 0.01, .max = 1e4});
+        {.help = "least area of the floor, square metres", .min = 0.01, .max = 1e4});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {

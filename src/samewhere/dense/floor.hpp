@@ -20,12 +20,12 @@ struct FloorPlane {
   double area_m2 = 0.0;   // of it, as much as was seen
 };
 
-// The floor that the cameras were carried above, or in a sentence why there is none. The mean of
-// what is up in the pictures tells roughly which way is up; the largest plane of about that normal
-// among the points below the cameras tells it exactly (RANSAC); of the surfaces at one height under
-// that normal, the floor is the lowest that has a quarter of the largest one's points, so that a
-// long table is not taken for it. One plane: a walk over stairs or ramps has no floor in this
-// sense, its largest one is found. `voxel_m` is the edge of the cloud's voxels.
+// Detects the floor, or gives the reason why there is none. The mean up direction of the cameras is
+// the prior; RANSAC finds the largest plane of about that normal among the points below the
+// cameras; of the surfaces at one height under that normal, the floor is the lowest with at least a
+// quarter of the points of the largest, so that a long table is not taken for it. A single plane:
+// with stairs or ramps the largest level surface is found. `voxel_m` is the voxel size of the
+// cloud.
 Result<FloorPlane, std::string> find_floor(const std::vector<CloudPoint>& cloud, double voxel_m,
                                            const core::Trajectory& cameras, const Config& config,
                                            std::uint64_t seed);

@@ -15,7 +15,7 @@ namespace samewhere::dense {
 
 enum class Cell { kUnknown, kFree, kOccupied };
 
-// A plan of the floor.
+// A 2D occupancy grid on the floor.
 struct OccupancyGrid {
   double cell_m = 0.0;
   Eigen::Vector2d corner_in_map = Eigen::Vector2d::Zero();  // of the cell (0, 0), metres
@@ -24,7 +24,7 @@ struct OccupancyGrid {
   cv::Mat log_odds;  // of being occupied, 32-bit float; row = y, ascending; column = x
 
   Cell at(int row, int column) const;
-  // Of the whole cells that are so, square metres.
+  // Area of the cells of this state, square metres.
   double area_m2(Cell kind) const;
 };
 

@@ -15,8 +15,8 @@ namespace samewhere::dense {
 // without OctoMap (-DSAMEWHERE_DENSE=OFF).
 void require_dense_maps();
 
-// What of space is free, what is occupied, what was never seen: the OctoMap of Hornung et al.
-// (Autonomous Robots 2013), by its library.
+// Free, occupied and unknown space in 3D: the OctoMap of Hornung et al. (Autonomous Robots 2013),
+// by its library.
 class OctreeMap {
  public:
   // Throws InputError as require_dense_maps().

@@ -46,7 +46,7 @@ TEST(OctreeMap, ItsLibraryReadsTheRoomBack) {
   const octomap::OcTreeNode* air = tree.search(in_world(2.0, 1.8, 1.0));
   ASSERT_NE(air, nullptr);
   EXPECT_FALSE(tree.isNodeOccupied(air));
-  EXPECT_EQ(tree.search(in_world(2.9, 1.3, 0.4)), nullptr) << "nobody looked into the box";
+  EXPECT_EQ(tree.search(in_world(2.9, 1.3, 0.4)), nullptr) << "no ray entered the box";
   EXPECT_EQ(tree.search(in_world(5.0, 1.0, 1.0)), nullptr) << "nor through the wall";
 }
 

@@ -18,9 +18,9 @@ struct CloudPoint {
   std::array<std::uint8_t, 3> rgb{};
 };
 
-// The surfaces that many views saw, as one coloured point per voxel: the mean of what fell into it,
-// each observation weighing 1 / depth^2, as the noise of a depth sensor grows. Holds at most
-// config.max_voxels voxels: when there are more, their edge doubles and eight become one.
+// Fused surface: one coloured point per voxel, the mean of its observations, each weighted by
+// 1 / depth^2, as the noise of a depth sensor grows. Holds at most config.max_voxels voxels: beyond
+// that the voxel size doubles and eight become one.
 class VoxelCloud {
  public:
   explicit VoxelCloud(const Config& config);

@@ -73,7 +73,7 @@ TEST(VoxelCloud, MoreVoxelsThanTheMemoryHoldsBecomeCoarser) {
   EXPECT_EQ(keys.size(), cloud.points().size()) << "one point a voxel, on both sides of zero";
 }
 
-TEST(VoxelCloud, CoarserVoxelsKeepWhoSawThem) {
+TEST(VoxelCloud, CoarserVoxelsKeepTheirViews) {
   VoxelCloud cloud({.voxel_m = 0.01, .max_voxels = 1000, .min_views = 2});
   cloud.add({at(0.005F, 0.005F, 0.005F)});
   cloud.add({at(0.015F, 0.005F, 0.005F)});

@@ -27,31 +27,33 @@ struct Config {
 
 inline void visit_fields(HogConfig& config, core::FieldVisitor& visit) {
   visit("width_px", config.width_px,
-        {.help = "the view is shrunk to this width; a multiple of cell_px", .min = 2, .max = 4096});
+        {.help = "columns of the image; a multiple of cell_px", .min = 2, .max = 4096});
   visit("height_px", config.height_px,
-        {.help = "and to this height; a multiple of cell_px", .min = 2, .max = 4096});
+        {.help = "rows of the image; a multiple of cell_px", .min = 2, .max = 4096});
   visit("cell_px", config.cell_px,
-        {.help = "side of a cell, one histogram of orientations each", .min = 1, .max = 1024});
+        {.help = "side of a cell, pixels; one histogram of orientations each",
+         .min = 1,
+         .max = 1024});
   visit("weak_gradient", config.weak_gradient,
-        {.help = "mean gradient (grey levels across two pixels) at which a block counts for 0.7; "
-                 "weaker ones fade, at 0 none does",
+        {.help = "mean gradient at which a block has weight 0.7, grey levels across two pixels; "
+                 "lower gradients have less weight; 0: equal weights",
          .min = 0.0,
          .max = 360.0});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("method", config.method,
-        {.help = "histograms of oriented gradients, or the code of a trained network",
+        {.help = "HOG (histograms of oriented gradients) or the code of a trained network",
          .choices = {"hog", "autoencoder"}});
   visit("network", config.network,
-        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN; a name alone: of models/, or else of the "
+        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN; a bare name: in models/, else in the "
                  "working directory"});
   visit("width_px", config.width_px,
-        {.help = "columns of the image after preprocessing", .min = 1, .max = 4096});
+        {.help = "columns of the preprocessed image", .min = 1, .max = 4096});
   visit("height_px", config.height_px,
-        {.help = "rows of the image after preprocessing", .min = 1, .max = 4096});
-  visit("equalize", config.equalize, {.help = "histogram equalisation, eq. (1)-(4)"});
-  visit("hog", config.hog, {.help = "histograms of oriented gradients"});
+        {.help = "rows of the preprocessed image", .min = 1, .max = 4096});
+  visit("equalize", config.equalize, {.help = "histogram equalization, eq. (1)-(4)"});
+  visit("hog", config.hog, {.help = "Histograms of oriented gradients"});
 }
 
 }  // namespace samewhere::describe

@@ -10,7 +10,7 @@
 
 namespace samewhere::describe {
 
-// What does this whole view look like, as a vector?
+// Image descriptor of a whole view.
 class Describer {
  public:
   Describer() = default;

@@ -15,7 +15,7 @@ constexpr double kNumDegrees = 6.0;
 constexpr double kChiSquare99 = 16.812;  // with 6 degrees of freedom
 constexpr double kNormal95 = 1.96;
 
-double normalised_error_squared(const MeasuredMotion& motion, const core::Rigid3& truth) {
+double nees_of(const MeasuredMotion& motion, const core::Rigid3& truth) {
   const core::Rigid3& measured = motion.from_from_to.a_from_b;
   core::Vector6d error;
   error << measured.translation - truth.translation,
@@ -31,7 +31,7 @@ std::optional<Consistency> consistency(const std::vector<MeasuredMotion>& motion
   for (const auto& motion : motions) {
     const auto from = truth_at(truth, motion.from_s);
     const auto to = truth_at(truth, motion.to_s);
-    if (from && to) squares.push_back(normalised_error_squared(motion, inverse(*from) * *to));
+    if (from && to) squares.push_back(nees_of(motion, inverse(*from) * *to));
   }
   if (squares.size() < 2) return std::nullopt;
   const auto count = static_cast<double>(squares.size());

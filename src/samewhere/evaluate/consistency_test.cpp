@@ -23,7 +23,7 @@ core::Trajectory walk(core::Random& random, int num_poses) {
   return truth;
 }
 
-// What somebody says who errs by `factor` times as much as they believe.
+// Measured motions whose errors are `factor` times the standard deviation of their covariance.
 std::vector<MeasuredMotion> measured(const core::Trajectory& truth, double factor,
                                      core::Random& random) {
   core::Vector6d sigma;
@@ -43,7 +43,7 @@ std::vector<MeasuredMotion> measured(const core::Trajectory& truth, double facto
   return motions;
 }
 
-TEST(Consistency, AnHonestOneLiesInTheBandMostOfTheTime) {
+TEST(Consistency, AConsistentOneLiesInTheBandMostOfTheTime) {
   int num_inside = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     core::Random random(seed);
@@ -57,7 +57,7 @@ TEST(Consistency, AnHonestOneLiesInTheBandMostOfTheTime) {
   EXPECT_GE(num_inside, 88);
 }
 
-TEST(Consistency, WhoErrsTwiceAsMuchAsTheySayHasFourTimesTheMean) {
+TEST(Consistency, TwiceTheStandardDeviationGivesFourTimesTheMean) {
   core::Random random(7);
   const core::Trajectory truth = walk(random, 2000);
   const auto found = consistency(measured(truth, 2.0, random), truth);
@@ -65,12 +65,12 @@ TEST(Consistency, WhoErrsTwiceAsMuchAsTheySayHasFourTimesTheMean) {
   EXPECT_NEAR(found->mean, 24.0, 2.0);
   EXPECT_GT(found->mean, found->band_high);
   EXPECT_GT(found->outliers, 0.4);
-  const auto modest = consistency(measured(truth, 0.5, random), truth);
-  EXPECT_LT(modest->mean, modest->band_low);
-  EXPECT_EQ(modest->outliers, 0.0);
+  const auto conservative = consistency(measured(truth, 0.5, random), truth);
+  EXPECT_LT(conservative->mean, conservative->band_low);
+  EXPECT_EQ(conservative->outliers, 0.0);
 }
 
-TEST(Consistency, WhatHasNoTruthDoesNotCount) {
+TEST(Consistency, MotionsWithoutTruthDoNotCount) {
   core::Random random(8);
   core::Trajectory truth = walk(random, 30);
   auto motions = measured(truth, 1.0, random);

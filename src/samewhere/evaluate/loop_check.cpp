@@ -24,19 +24,19 @@ CheckedLoop check_by_pose(const AcceptedLoop& loop, const core::Rigid3& match_fr
   const core::Rigid3 error = core::inverse(true_pose) * match_from_query;
   const double translation_error_m = error.translation.norm();
   const double rotation_error_deg = core::angle_rad(error.rotation) * 180.0 / std::numbers::pi;
-  // asked this way round so that a pose that is not finite is wrong
-  const bool is_right =
+  // written so that a pose that is not finite is false
+  const bool is_true =
       translation_error_m <= kMaxTranslationError_m && rotation_error_deg <= kMaxRotationError_deg;
-  return {loop, is_right ? LoopTruth::kRight : LoopTruth::kWrong, translation_error_m,
+  return {loop, is_true ? LoopTruth::kTrue : LoopTruth::kFalse, translation_error_m,
           rotation_error_deg};
 }
 
 LoopTruth truth_by_matrix(const AcceptedLoop& loop, const core::PlaceTruthMatrix& places) {
   switch (place_truth_of(places, loop.query, loop.match)) {
     case core::PlaceTruth::kSame:
-      return LoopTruth::kRight;
+      return LoopTruth::kTrue;
     case core::PlaceTruth::kDifferent:
-      return LoopTruth::kWrong;
+      return LoopTruth::kFalse;
     case core::PlaceTruth::kNear:
       break;
   }
@@ -63,12 +63,12 @@ LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth&
   for (const AcceptedLoop& loop : loops) {
     result.loops.push_back(check(loop, truth, scale));
     const LoopTruth found = result.loops.back().truth;
-    result.num_right += found == LoopTruth::kRight ? 1 : 0;
-    result.num_wrong += found == LoopTruth::kWrong ? 1 : 0;
+    result.num_true += found == LoopTruth::kTrue ? 1 : 0;
+    result.num_false += found == LoopTruth::kFalse ? 1 : 0;
     result.num_unknown += found == LoopTruth::kUnknown ? 1 : 0;
-    const bool is_impostor =
-        found == LoopTruth::kWrong && are_impostors(truth.impostors, loop.query, loop.match);
-    result.num_impostors += is_impostor ? 1 : 0;
+    const bool is_aliased =
+        found == LoopTruth::kFalse && is_aliased_pair(truth.aliased_pairs, loop.query, loop.match);
+    result.num_aliased += is_aliased ? 1 : 0;
   }
   for (const core::FrameSpan& revisit : truth.revisits.value_or(std::vector<core::FrameSpan>{})) {
     ++result.num_revisits;
@@ -79,7 +79,7 @@ LoopCheck check_loops(const std::vector<AcceptedLoop>& loops, const core::Truth&
 
 bool is_closed(const core::FrameSpan& revisit, const std::vector<CheckedLoop>& loops) {
   return std::any_of(loops.begin(), loops.end(), [&](const CheckedLoop& checked) {
-    return checked.truth == LoopTruth::kRight && revisit.first <= checked.loop.query &&
+    return checked.truth == LoopTruth::kTrue && revisit.first <= checked.loop.query &&
            checked.loop.query <= revisit.last;
   });
 }

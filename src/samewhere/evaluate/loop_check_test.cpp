@@ -35,7 +35,7 @@ LoopTruth verdict_on(const core::Rigid3& match_from_query, double scale = 1.0) {
 
 TEST(LoopCheck, TheTruePoseIsRight) {
   const LoopCheck check = check_loops({loop_with(true_return())}, walk_and_return());
-  EXPECT_EQ(check.num_right, 1);
+  EXPECT_EQ(check.num_true, 1);
   ASSERT_TRUE(check.loops[0].translation_error_m);
   EXPECT_NEAR(*check.loops[0].translation_error_m, 0.0, 1e-9);
   EXPECT_NEAR(*check.loops[0].rotation_error_deg, 0.0, 1e-6);
@@ -49,39 +49,39 @@ TEST(LoopCheck, ARevisitIsClosedByARightLoopWithinIt) {
   const LoopCheck check = check_loops({loop_with(true_return())}, truth);
   EXPECT_EQ(check.num_revisits, 2);
   EXPECT_EQ(check.num_closed, 1);
-  const LoopCheck wrong = check_loops({loop_with(core::inverse(true_return()))}, truth);
-  EXPECT_EQ(wrong.num_closed, 0) << "a wrong loop closes nothing";
+  const LoopCheck with_false = check_loops({loop_with(core::inverse(true_return()))}, truth);
+  EXPECT_EQ(with_false.num_closed, 0) << "a false loop closes no revisit";
 }
 
 TEST(LoopCheck, TheBordersAreTwentyCentimetresAndSixDegrees) {
   core::Rigid3 shifted = true_return();
   shifted.translation.y() = 0.199;
-  EXPECT_EQ(verdict_on(shifted), LoopTruth::kRight);
+  EXPECT_EQ(verdict_on(shifted), LoopTruth::kTrue);
   shifted.translation.y() = 0.201;
-  EXPECT_EQ(verdict_on(shifted), LoopTruth::kWrong);
+  EXPECT_EQ(verdict_on(shifted), LoopTruth::kFalse);
 
   core::Rigid3 turned = true_return();
   turned.rotation = turned.rotation * core::exp_so3({5.9 * kDegree, 0, 0});
-  EXPECT_EQ(verdict_on(turned), LoopTruth::kRight);
+  EXPECT_EQ(verdict_on(turned), LoopTruth::kTrue);
   turned.rotation = true_return().rotation * core::exp_so3({6.1 * kDegree, 0, 0});
-  EXPECT_EQ(verdict_on(turned), LoopTruth::kWrong);
+  EXPECT_EQ(verdict_on(turned), LoopTruth::kFalse);
 }
 
 TEST(LoopCheck, TheInverseOfALargeMotionIsWrong) {
-  EXPECT_EQ(verdict_on(core::inverse(true_return())), LoopTruth::kWrong);
+  EXPECT_EQ(verdict_on(core::inverse(true_return())), LoopTruth::kFalse);
 }
 
 TEST(LoopCheck, AMonocularTranslationIsScaledFirst) {
   core::Rigid3 in_other_units = true_return();
   in_other_units.translation *= 10.0;
-  EXPECT_EQ(verdict_on(in_other_units), LoopTruth::kWrong);
-  EXPECT_EQ(verdict_on(in_other_units, 0.1), LoopTruth::kRight);
+  EXPECT_EQ(verdict_on(in_other_units), LoopTruth::kFalse);
+  EXPECT_EQ(verdict_on(in_other_units, 0.1), LoopTruth::kTrue);
 }
 
 TEST(LoopCheck, APoseThatIsNotANumberIsWrong) {
   core::Rigid3 broken = true_return();
   broken.translation.x() = std::nan("");
-  EXPECT_EQ(verdict_on(broken), LoopTruth::kWrong);
+  EXPECT_EQ(verdict_on(broken), LoopTruth::kFalse);
 }
 
 TEST(LoopCheck, DoesNotDependOnWhereTheWorldBegins) {
@@ -107,12 +107,12 @@ TEST(LoopCheck, WithoutPoseTruthTheMatrixDecides) {
   const LoopCheck check = check_loops(
       {{3, 0, 0.3, 0.0, std::nullopt}, {3, 1, 0.3, 0.1, true_return()}, {2, 0, 0.2, 0.0, {}}},
       truth);
-  EXPECT_EQ(check.loops[0].truth, LoopTruth::kRight);
+  EXPECT_EQ(check.loops[0].truth, LoopTruth::kTrue);
   EXPECT_EQ(check.loops[1].truth, LoopTruth::kUnknown);
-  EXPECT_EQ(check.loops[2].truth, LoopTruth::kWrong);
-  EXPECT_EQ(check.num_right, 1);
+  EXPECT_EQ(check.loops[2].truth, LoopTruth::kFalse);
+  EXPECT_EQ(check.num_true, 1);
   EXPECT_EQ(check.num_unknown, 1);
-  EXPECT_EQ(check.num_wrong, 1);
+  EXPECT_EQ(check.num_false, 1);
   EXPECT_FALSE(check.loops[1].translation_error_m);
   EXPECT_THROW(check_loops({{9, 0, 0.0, 0.0, {}}}, truth), core::InputError);
 }
@@ -121,20 +121,20 @@ TEST(LoopCheck, ALoopWithoutAPoseFallsBackToTheMatrix) {
   core::Truth truth = walk_and_return();
   EXPECT_EQ(check_loops({loop_with(std::nullopt)}, truth).num_unknown, 1);
   truth.places = core::PlaceTruthMatrix{4, std::vector<core::PlaceTruth>(16)};
-  EXPECT_EQ(check_loops({loop_with(std::nullopt)}, truth).num_wrong, 1);
+  EXPECT_EQ(check_loops({loop_with(std::nullopt)}, truth).num_false, 1);
 }
 
-TEST(LoopCheck, OfTheWrongOnesImpostorsAreCounted) {
+TEST(LoopCheck, FalseLoopsOfAliasedPairsAreCounted) {
   core::Truth truth;
   truth.places = core::PlaceTruthMatrix{4, std::vector<core::PlaceTruth>(16)};
-  truth.impostors = {{2, 0}, {3, 1}};
+  truth.aliased_pairs = {{2, 0}, {3, 1}};
   const LoopCheck check = check_loops(
       {{3, 0, 0.3, 0.0, {}}, {3, 1, 0.3, 0.1, {}}, {2, 0, 0.2, 0.0, {}}, {2, 1, 0.2, 0.1, {}}},
       truth);
-  EXPECT_EQ(check.num_wrong, 4);
-  EXPECT_EQ(check.num_impostors, 2);
-  truth.impostors.clear();
-  EXPECT_EQ(check_loops({{3, 1, 0.3, 0.1, {}}}, truth).num_impostors, 0);
+  EXPECT_EQ(check.num_false, 4);
+  EXPECT_EQ(check.num_aliased, 2);
+  truth.aliased_pairs.clear();
+  EXPECT_EQ(check_loops({{3, 1, 0.3, 0.1, {}}}, truth).num_aliased, 0);
 }
 
 TEST(LoopCheck, OutsideTheTruthNothingIsKnown) {

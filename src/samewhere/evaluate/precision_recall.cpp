@@ -14,7 +14,7 @@ constexpr double kFullPrecision = 1.0 - 1e-12;
 
 struct ScoredAnswer {
   double score;
-  bool is_right;
+  bool is_true;
 };
 
 bool is_recent(int query, int match, int window_frames) { return query - match <= window_frames; }
@@ -64,13 +64,12 @@ std::vector<ScoredAnswer> scored_answers(const core::PlaceTruthMatrix& truth,
 std::vector<PrecisionRecallPoint> sweep(const std::vector<ScoredAnswer>& answers,
                                         int num_with_loop) {
   std::vector<PrecisionRecallPoint> curve;
-  int num_right = 0;
+  int num_true = 0;
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    num_right += answers[i].is_right ? 1 : 0;
+    num_true += answers[i].is_true ? 1 : 0;
     if (i + 1 < answers.size() && answers[i + 1].score == answers[i].score) continue;
-    curve.push_back({static_cast<double>(num_right) / num_with_loop,
-                     static_cast<double>(num_right) / static_cast<double>(i + 1),
-                     answers[i].score});
+    curve.push_back({static_cast<double>(num_true) / num_with_loop,
+                     static_cast<double>(num_true) / static_cast<double>(i + 1), answers[i].score});
   }
   return curve;
 }
@@ -104,8 +103,8 @@ double recall_at_full_precision(const std::vector<PrecisionRecallPoint>& curve) 
 core::PlaceTruth place_truth_of(const core::PlaceTruthMatrix& truth, int query, int match) {
   const auto is_inside = [&](int frame) { return frame >= 0 && frame < truth.num_frames; };
   if (!is_inside(query) || !is_inside(match))
-    throw core::InputError(fmt::format("query {} with match {}: the truth knows frames 0 to {}",
-                                       query, match, truth.num_frames - 1));
+    throw core::InputError(fmt::format("query {} with match {}: expected frames 0 to {}", query,
+                                       match, truth.num_frames - 1));
   return truth.at(query, match);
 }
 
@@ -125,21 +124,21 @@ PrecisionRecall precision_recall(const core::PlaceTruthMatrix& truth,
   result.precision_at_recall_35 = precision_at(result.curve, 0.35);
   result.precision_at_recall_70 = precision_at(result.curve, 0.70);
   result.max_recall = result.curve.back().recall;
-  result.num_wrong = static_cast<int>(std::count_if(
-      answers.begin(), answers.end(), [](const ScoredAnswer& a) { return !a.is_right; }));
+  result.num_false = static_cast<int>(std::count_if(
+      answers.begin(), answers.end(), [](const ScoredAnswer& a) { return !a.is_true; }));
   return result;
 }
 
-bool are_impostors(const std::vector<core::FramePair>& impostors, int query, int match) {
-  return std::binary_search(impostors.begin(), impostors.end(),
+bool is_aliased_pair(const std::vector<core::FramePair>& aliased_pairs, int query, int match) {
+  return std::binary_search(aliased_pairs.begin(), aliased_pairs.end(),
                             core::FramePair{std::max(query, match), std::min(query, match)});
 }
 
-int count_accepted_impostors(const std::vector<core::FramePair>& impostors,
-                             const std::vector<Match>& accepted, int window_frames) {
+int count_accepted_aliased(const std::vector<core::FramePair>& aliased_pairs,
+                           const std::vector<Match>& accepted, int window_frames) {
   return static_cast<int>(std::count_if(accepted.begin(), accepted.end(), [&](const Match& row) {
     return !is_recent(row.query, row.match, window_frames) &&
-           are_impostors(impostors, row.query, row.match);
+           is_aliased_pair(aliased_pairs, row.query, row.match);
   }));
 }
 
@@ -151,11 +150,11 @@ AcceptedCounts count_accepted(const core::PlaceTruthMatrix& truth,
     if (is_recent(row.query, row.match, window_frames))
       ++counts.num_recent;
     else if (place == core::PlaceTruth::kSame)
-      ++counts.num_right;
+      ++counts.num_true;
     else if (place == core::PlaceTruth::kNear)
       ++counts.num_near;
     else
-      ++counts.num_wrong;
+      ++counts.num_false;
   }
   return counts;
 }

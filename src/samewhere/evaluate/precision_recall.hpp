@@ -6,8 +6,8 @@
 
 namespace samewhere::evaluate {
 
-// What a detector says about one query: 0-based positions of two frames in the source, and how sure
-// it is (any finite scale, higher is surer).
+// The match of one query: 0-based positions of two frames in the source, and a score (finite,
+// higher is more similar).
 struct Match {
   int query = 0;
   int match = 0;
@@ -24,37 +24,37 @@ struct PrecisionRecallPoint {
 struct PrecisionRecall {
   std::vector<PrecisionRecallPoint> curve;  // recall ascends; empty if nothing can be scored
   double auc = 0.0;                         // trapezoid from recall 0 at the first precision
-  double recall_at_full_precision = 0.0;    // the largest at which no accepted match is wrong
+  double recall_at_full_precision = 0.0;    // the largest without an accepted false match
   double precision_at_recall_35 = 0.0;  // the best at a recall of at least .35, 0 if not reached
   double precision_at_recall_70 = 0.0;
   int num_queries = 0;
   int num_with_loop = 0;  // queries with any true loop outside the window
   double max_recall = 0.0;
-  int num_wrong = 0;  // with every match accepted
+  int num_false = 0;  // with every match accepted
 };
 
 // Scores the matches of a sequence by sweeping the acceptance threshold over all their scores.
 // `matches` has at most one row per query. Rows with query - match <= window_frames are no loops
-// and are left out. A near match counts for nothing: it drops out of precision, and its query, if
-// it has a loop, stays missed. Throws InputError on a row outside the matrix, a second row of a
+// and are left out. A near match is ignored: it does not count for precision, and its query, if it
+// has a loop, counts as missed. Throws InputError on a row outside the matrix, a second row of a
 // query or a score that is not finite.
 PrecisionRecall precision_recall(const core::PlaceTruthMatrix& truth,
                                  const std::vector<Match>& matches, int window_frames);
 
-// Accepted matches by what they are in truth.
+// Accepted matches by their place truth.
 struct AcceptedCounts {
-  int num_right = 0;
-  int num_wrong = 0;
-  int num_near = 0;    // counts for nothing
-  int num_recent = 0;  // inside the window: no loop at all
+  int num_true = 0;
+  int num_false = 0;
+  int num_near = 0;    // ignored
+  int num_recent = 0;  // inside the window: no loop
 };
 
-// Whether Truth::impostors names the two frames; the order of the two does not matter.
-bool are_impostors(const std::vector<core::FramePair>& impostors, int query, int match);
+// Whether the two frames, in either order, are one of Truth::aliased_pairs.
+bool is_aliased_pair(const std::vector<core::FramePair>& aliased_pairs, int query, int match);
 
-// Accepted matches outside the window that Truth::impostors names. They are wrong ones.
-int count_accepted_impostors(const std::vector<core::FramePair>& impostors,
-                             const std::vector<Match>& accepted, int window_frames);
+// Accepted matches outside the window that are one of Truth::aliased_pairs, all of them false.
+int count_accepted_aliased(const std::vector<core::FramePair>& aliased_pairs,
+                           const std::vector<Match>& accepted, int window_frames);
 
 // Counts at one threshold: `accepted` may hold several rows of one query. Throws InputError on a
 // row outside the matrix.

@@ -24,12 +24,12 @@ const core::PlaceTruthMatrix kSecondLap =
     matrix({"100000", "010000", "001000", "100100", "010010", "021001"});
 
 TEST(PrecisionRecall, OfAKnownListIsKnown) {
-  // surest right, then wrong, then right
+  // true at the highest score, then false, then true
   const PrecisionRecall result =
       precision_recall(kSecondLap, {{3, 0, 0.9}, {4, 0, 0.8}, {5, 2, 0.7}}, 0);
   EXPECT_EQ(result.num_queries, 6);
   EXPECT_EQ(result.num_with_loop, 3);
-  EXPECT_EQ(result.num_wrong, 1);
+  EXPECT_EQ(result.num_false, 1);
   ASSERT_EQ(result.curve.size(), 3u);
   EXPECT_NEAR(result.curve[1].precision, 0.5, 1e-12);
   EXPECT_NEAR(result.curve[2].precision, 2.0 / 3.0, 1e-12);
@@ -47,7 +47,7 @@ TEST(PrecisionRecall, OfAPerfectDetectorIsOne) {
       precision_recall(kSecondLap, {{3, 0, 0.1}, {4, 1, 0.2}, {5, 2, 0.3}}, 0);
   EXPECT_NEAR(result.auc, 1.0, 1e-12);
   EXPECT_NEAR(result.recall_at_full_precision, 1.0, 1e-12);
-  EXPECT_EQ(result.num_wrong, 0);
+  EXPECT_EQ(result.num_false, 0);
 }
 
 TEST(PrecisionRecall, EqualScoresAreAcceptedTogether) {
@@ -60,7 +60,7 @@ TEST(PrecisionRecall, EqualScoresAreAcceptedTogether) {
 TEST(PrecisionRecall, ANearMatchCountsForNothingButItsQueryStaysMissed) {
   const PrecisionRecall result =
       precision_recall(kSecondLap, {{3, 0, 0.9}, {4, 1, 0.9}, {5, 1, 1.0}}, 0);
-  EXPECT_EQ(result.num_wrong, 0);
+  EXPECT_EQ(result.num_false, 0);
   EXPECT_NEAR(result.max_recall, 2.0 / 3.0, 1e-12);
   EXPECT_NEAR(result.recall_at_full_precision, 2.0 / 3.0, 1e-12);
 }
@@ -114,21 +114,20 @@ TEST(PrecisionRecall, RefusesRowsThatMakeNoSense) {
 TEST(CountAccepted, SortsEveryRowIntoOneOfFour) {
   const AcceptedCounts counts = count_accepted(
       kSecondLap, {{3, 0, 1}, {4, 1, 1}, {4, 0, 1}, {5, 1, 1}, {5, 3, 1}, {5, 3, 1}}, 2);
-  EXPECT_EQ(counts.num_right, 2);
-  EXPECT_EQ(counts.num_wrong, 1);
+  EXPECT_EQ(counts.num_true, 2);
+  EXPECT_EQ(counts.num_false, 1);
   EXPECT_EQ(counts.num_near, 1);
   EXPECT_EQ(counts.num_recent, 2);
   EXPECT_THROW(count_accepted(kSecondLap, {{0, 6, 1}}, 2), core::InputError);
 }
 
-TEST(CountAccepted, ImpostorsAreCountedOutsideOfTheWindow) {
-  const std::vector<core::FramePair> impostors = {{3, 0}, {4, 0}, {5, 3}};
-  EXPECT_EQ(count_accepted_impostors(impostors, {{3, 0, 1}, {4, 1, 1}, {4, 0, 1}, {5, 3, 1}}, 2),
-            2);
-  EXPECT_EQ(count_accepted_impostors({}, {{3, 0, 1}}, 2), 0);
-  EXPECT_TRUE(are_impostors(impostors, 4, 0));
-  EXPECT_TRUE(are_impostors(impostors, 0, 4));
-  EXPECT_FALSE(are_impostors(impostors, 4, 3));
+TEST(CountAccepted, AliasedPairsAreCountedOutsideOfTheWindow) {
+  const std::vector<core::FramePair> pairs = {{3, 0}, {4, 0}, {5, 3}};
+  EXPECT_EQ(count_accepted_aliased(pairs, {{3, 0, 1}, {4, 1, 1}, {4, 0, 1}, {5, 3, 1}}, 2), 2);
+  EXPECT_EQ(count_accepted_aliased({}, {{3, 0, 1}}, 2), 0);
+  EXPECT_TRUE(is_aliased_pair(pairs, 4, 0));
+  EXPECT_TRUE(is_aliased_pair(pairs, 0, 4));
+  EXPECT_FALSE(is_aliased_pair(pairs, 4, 3));
 }
 
 }  // namespace

@@ -201,7 +201,7 @@ TEST_F(PythonTools, AgreeOnPrecisionAndRecall) {
       EXPECT_NEAR(ours.max_recall, figure(theirs, "max_recall"), 1e-9);
       EXPECT_EQ(ours.num_queries, figure(theirs, "queries"));
       EXPECT_EQ(ours.num_with_loop, figure(theirs, "with_loop"));
-      EXPECT_EQ(ours.num_wrong, figure(theirs, "wrong"));
+      EXPECT_EQ(ours.num_false, figure(theirs, "wrong"));
     }
   }
 }
@@ -229,7 +229,7 @@ TEST_F(PythonTools, AgreeOnTheTowerWalk) {
       run("walk.py", fmt::format("'{}' '{}'", path.string(), (folder_ / "accepted.txt").string()));
   const WalkCounts ours = count_walk(walk, accepted);
   EXPECT_EQ(ours.num_loops, figure(theirs, "loops"));
-  EXPECT_EQ(ours.num_wrong, figure(theirs, "wrong"));
+  EXPECT_EQ(ours.num_false, figure(theirs, "wrong"));
   EXPECT_EQ(ours.num_same_floor, figure(theirs, "same_floor"));
   EXPECT_EQ(ours.num_same_clip, figure(theirs, "same_clip"));
   EXPECT_GT(ours.num_same_clip, 0);

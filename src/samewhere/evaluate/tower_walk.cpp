@@ -34,7 +34,7 @@ WalkCounts count_walk(const std::vector<WalkPlace>& walk, const std::vector<Matc
     const WalkPlace& match = place_at(walk, loop.match);
     const bool is_same_floor = query.floor == match.floor;
     ++counts.num_loops;
-    counts.num_wrong += is_same_floor ? 0 : 1;
+    counts.num_false += is_same_floor ? 0 : 1;
     counts.num_same_floor += is_same_floor ? 1 : 0;
     counts.num_same_clip += is_same_floor && query.clip == match.clip ? 1 : 0;
   }

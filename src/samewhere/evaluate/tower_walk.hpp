@@ -8,21 +8,20 @@
 
 namespace samewhere::evaluate {
 
-// Where one image of a walk was taken.
+// Place of one image of the sequence.
 struct WalkPlace {
   std::string floor;
-  std::string clip;  // one piece of film
+  std::string clip;  // one video clip
 };
 
 // Reads lines "image floor clip" (core::read_text_lines). Throws InputError naming file and line on
 // a line with fewer words.
 std::vector<WalkPlace> read_walk(const std::filesystem::path& path);
 
-// Accepted loops of a walk through floors that look alike, where hardly anything is seen twice:
-// every loop between two floors is wrong.
+// Accepted loops of a sequence through look-alike floors: every loop between two floors is false.
 struct WalkCounts {
   int num_loops = 0;
-  int num_wrong = 0;       // join two floors
+  int num_false = 0;       // between two floors
   int num_same_floor = 0;  //
   int num_same_clip = 0;   // of these
 };

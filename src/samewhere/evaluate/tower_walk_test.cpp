@@ -38,7 +38,7 @@ TEST_F(TowerWalk, EveryLoopBetweenTwoFloorsIsWrong) {
   const WalkCounts counts =
       count_walk(walk_of(kWalk), {{1, 0, 1.0}, {2, 0, 1.0}, {3, 0, 1.0}, {3, 2, 1.0}});
   EXPECT_EQ(counts.num_loops, 4);
-  EXPECT_EQ(counts.num_wrong, 2);
+  EXPECT_EQ(counts.num_false, 2);
   EXPECT_EQ(counts.num_same_floor, 2);
   EXPECT_EQ(counts.num_same_clip, 1);
 }

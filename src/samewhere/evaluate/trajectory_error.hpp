@@ -26,14 +26,13 @@ struct AteResult {
   core::Sim3 truth_from_estimate;
 };
 
-// How far the estimated positions are from the true ones: the paper's eq. (24)-(25), with truth
-// interpolated to the estimate's stamps (truth_at) and least squares alignment
-// (geometry::align_points). Both trajectories are of camera 0. Nothing with fewer than 3 poses that
-// have a truth.
+// Absolute trajectory error: eq. (24)-(25) of the paper, with ground truth interpolated to the
+// estimate's stamps (truth_at) and least squares alignment (geometry::align_points). Both
+// trajectories are of camera 0. Nothing with fewer than 3 poses that have a truth.
 std::optional<AteResult> ate(const core::Trajectory& truth, const core::Trajectory& estimate,
                              Alignment alignment);
 
-// How far the camera went between two stamps, metres: from one pose to the next.
+// Length of the path between two stamps, metres, summed from pose to pose.
 double path_length_m(const core::Trajectory& trajectory, double first_s, double last_s);
 
 // Relative pose error: drift over a fixed time, free of any alignment.

@@ -24,11 +24,11 @@ struct Corner {
 // contrast of the config.
 std::vector<Corner> find_corners(const cv::Mat& image, int level, const Config& config);
 
-// The config.num_features corners to keep: of each cell of the picture its two strongest, so that
-// no part is left empty while another is crowded; then of each cell on each level its strongest in
-// turn. A cell covers the same part of the picture on each level: shares by the area of the levels
-// match still pictures a little better, but the coarse levels carry the tracking of a camera that
-// shakes. In the order of turn, strength, level, position.
+// Distribution of the corners: the config.num_features corners to keep. First the two strongest of
+// each cell of the image, so that no part is left empty; then of each cell on each level the
+// strongest in turn. A cell covers the same part of the image on each level: shares by the area of
+// the levels match static images a little better, but coarse levels carry tracking under camera
+// shake. Order: turn, strength, level, position.
 std::vector<Corner> spread_evenly(std::vector<Corner> corners, const Config& config);
 
 // The corner moved to the top of a parabola through the strengths around it, at most half a pixel

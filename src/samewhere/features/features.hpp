@@ -15,7 +15,7 @@
 
 namespace samewhere::features {
 
-// An array in ordinary memory or in memory that can be left (paged.hpp).
+// An array in ordinary memory or in paged memory (paged.hpp).
 template <class T>
 using Array = std::pmr::vector<T>;
 
@@ -37,8 +37,7 @@ struct Features {
   int size() const { return static_cast<int>(raw_px.size()); }
 };
 
-// One picture, as recognition and geometry see it: what is left of a frame when the picture is
-// gone.
+// A view: the features of a frame, without its image.
 struct View {
   core::FrameId frame;
   double stamp_s = 0.0;

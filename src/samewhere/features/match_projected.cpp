@@ -45,10 +45,11 @@ std::optional<Match> best_near(const ProjectedPoint& point, const unsigned char*
     }
   });
   if (best.feature < 0 || best.distance_bits > config.max_distance_bits) return std::nullopt;
-  // the same corner is often found on two levels: a second best on another level is no rival
-  const bool has_rival =
+  // the same corner is often found on two levels: a second best on another level does not make the
+  // match ambiguous
+  const bool is_contested =
       second.feature >= 0 && octave_of(second.feature) == octave_of(best.feature);
-  if (has_rival && best.distance_bits > config.max_ratio * second.distance_bits) {
+  if (is_contested && best.distance_bits > config.max_ratio * second.distance_bits) {
     return std::nullopt;
   }
   return Match{point.row, best.feature, best.distance_bits};

@@ -25,12 +25,11 @@ struct Side {
   const Features& features;
 };
 
-// For each feature of the left picture where it is along its row of the right one, full-size
-// pixels, NaN where it was not found. The most similar descriptor on the row, on the same or a
-// neighbouring level and no nearer than two baselines, says where to look; there the surroundings
-// are compared at steps of a pixel of the level and a parabola placed through the differences.
-// Matches whose surroundings differ by far more than the median pair's are taken out (Mur-Artal and
-// Tardos 2017).
+// Stereo matches: for each feature of the left image its position along its row in the right image,
+// full-size pixels, NaN without a match. The most similar descriptor on the row, on the same or a
+// neighbouring level and at a depth of at least two baselines, is refined by block matching in
+// steps of a pixel of the level and a parabola through the differences. Matches whose block
+// difference is far above the median are removed (Mur-Artal and Tardos 2017).
 Array<float> match_stereo(const Side& left, const Side& right, const core::Rig& rig,
                           const Config& config);
 

@@ -11,8 +11,7 @@
 
 namespace samewhere::features {
 
-// What a feature looks like, roughly: the leaf of the vocabulary that its descriptor falls into.
-// Descriptors of one word resemble each other, few of two words do.
+// A visual word: the leaf of the vocabulary that a descriptor falls into.
 using Word = std::uint32_t;
 
 // A tree of binary descriptors (Nister and Stewenius 2006, for binary ones Galvez-Lopez and Tardos

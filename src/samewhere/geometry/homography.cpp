@@ -56,7 +56,8 @@ double squared_distance(const Eigen::Matrix3d& to_from, const Eigen::Vector3d& f
   return ((to_from * from).hnormalized() - to.hnormalized()).squaredNorm();
 }
 
-// The motion under which H = R + t n' with this unit vector u in the plane of n's rivals.
+// The motion under which H = R + t n' with this unit vector u in the plane of the candidate
+// normals.
 PlanarMotion motion_along(const Eigen::Matrix3d& h, const Eigen::Vector3d& middle,
                           const Eigen::Vector3d& u) {
   Eigen::Matrix3d from;

@@ -24,7 +24,7 @@ struct RansacResult {
   int num_iterations = 0;
 };
 
-// What RANSAC found for one model: the truncated sum of squared errors (MSAC) and who is an inlier.
+// What RANSAC found for one model: the truncated sum of squared errors (MSAC) and the inliers.
 struct RansacScore {
   double cost = 0.0;
   std::vector<int> inliers;

@@ -23,39 +23,38 @@ struct Config {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("camera", config.camera,
-        {.help = "camera file to use instead of the recording's own; empty: its own"});
-  visit("fps", config.fps,
-        {.help = "frames per second where there are no stamps; 0: 12 for HoloLens, 30 for others",
-         .min = 0.0,
-         .max = 10000.0});
-  visit("depth_factor", config.depth_factor,
-        {.help = "depth units per metre; 0: what the camera file says, or else 5000 for TUM RGB-D, "
-                 "1000 for others",
-         .min = 0.0,
-         .max = 1e6});
+        {.help = "camera file that replaces the recording's own; empty: the recording's own"});
+  visit(
+      "fps", config.fps,
+      {.help = "frames per second of recordings without stamps; 0: 12 for HoloLens, 30 for others",
+       .min = 0.0,
+       .max = 10000.0});
+  visit(
+      "depth_factor", config.depth_factor,
+      {.help =
+           "depth units per metre; 0: of the camera file, else 5000 for TUM RGB-D, 1000 for others",
+       .min = 0.0,
+       .max = 1e6});
   visit("fov_deg", config.fov_deg,
         {.help = "horizontal field of view of a camera without calibration, degrees; 0: guessed",
          .min = 0.0,
          .max = 170.0});
   visit(
       "focal_length_keyframes", config.focal_length_keyframes,
-      {.help = "keyframes of the first pass over a recording whose focal length is guessed, which "
-               "estimates it; 0: it stays as guessed",
+      {.help =
+           "keyframes of the first pass, which estimates a guessed focal length; 0: no first pass",
        .min = 0,
        .max = 1000});
   visit("max_stamp_difference_s", config.max_stamp_difference_s,
-        {.help = "largest distance in time of pictures that make one frame, s",
-         .min = 0.0,
-         .max = 1.0});
+        {.help = "largest time difference of the images of one frame, s", .min = 0.0, .max = 1.0});
   visit("depth", config.depth,
-        {.help = "whether depth images are read; without them a recording is monocular"});
-  visit(
-      "enlarge", config.enlarge,
-      {.help = "in SLAM, pictures of fewer than 480 x 360 pixels are enlarged to as many as 640 x "
-               "480 has: corners lie at whole pixels, and depths from motion are no finer"});
+        {.help = "depth images are read; false: the recording is treated as monocular"});
+  visit("enlarge", config.enlarge,
+        {.help = "`run`: images below 480 x 360 pixels are enlarged to the pixel count of 640 x "
+                 "480: corners have whole-pixel coordinates"});
   visit("realtime", config.realtime,
-        {.help = "a camera, or a video that is played at its own pace: always the newest frame; "
-                 "what comes too fast is dropped, so that two runs need not agree"});
+        {.help = "camera or video at its own pace: the newest frame is used, the others are "
+                 "dropped; not reproducible"});
 }
 
 }  // namespace samewhere::input

@@ -19,20 +19,20 @@ std::string doubt(double written, double read) {
   return doubt_about_depth({&depth_m, 1}, read).value_or("none");
 }
 
-TEST(DepthCheck, ARoomReadAsItWasWrittenRaisesNoDoubt) {
+TEST(DepthCheck, ARoomReadAsItWasWrittenRaisesNoWarning) {
   EXPECT_EQ(doubt(1000.0, 1000.0), "none");
   EXPECT_EQ(doubt(5000.0, 5000.0), "none");
 }
 
-TEST(DepthCheck, MillimetresReadAt5000AMetreAreDoubted) {
+TEST(DepthCheck, MillimetresReadAt5000AMetreAreWarnedOf) {
   EXPECT_THAT(doubt(1000.0, 5000.0), HasSubstr("input.depth_factor=1000"));
 }
 
-TEST(DepthCheck, AFactorOf5000ReadAsMillimetresIsDoubted) {
+TEST(DepthCheck, AFactorOf5000ReadAsMillimetresIsWarnedOf) {
   EXPECT_THAT(doubt(5000.0, 1000.0), HasSubstr("input.depth_factor=5000"));
 }
 
-TEST(DepthCheck, OneNearOrFarPictureAmongOthersRaisesNoDoubt) {
+TEST(DepthCheck, OneNearOrFarPictureAmongOthersRaisesNoWarning) {
   const cv::Mat near(120, 160, CV_32FC1, cv::Scalar(0.3));
   const cv::Mat far(120, 160, CV_32FC1, cv::Scalar(14.0));
   const cv::Mat room(120, 160, CV_32FC1, cv::Scalar(2.0));

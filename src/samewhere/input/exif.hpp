@@ -7,8 +7,8 @@ namespace samewhere::input {
 
 // What a JPEG file's EXIF data notes. Nothing of it is trusted: damaged data is as none.
 
-// How the picture is to be turned or mirrored before a person looks at it: the EXIF orientation, 2
-// to 8; 1 if it is not, or if nothing is noted.
+// Rotation or mirroring to display the image upright: the EXIF orientation, 2 to 8; 1 if there is
+// none or nothing is noted.
 int exif_orientation(std::string_view jpeg);
 
 // The focal length of a 35 mm film camera with the same field of view, mm (FocalLengthIn35mmFilm).

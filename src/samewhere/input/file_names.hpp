@@ -8,7 +8,7 @@
 
 namespace samewhere::input {
 
-// The order of a person: runs of digits count as numbers, so 2.jpg comes before 10.jpg.
+// Natural order: runs of digits count as numbers, so 2.jpg comes before 10.jpg.
 bool natural_less(std::string_view a, std::string_view b);
 
 // The last number in the name before its extension, if it has at most nine digits beside zeros that

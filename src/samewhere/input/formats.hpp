@@ -8,12 +8,12 @@
 
 namespace samewhere::input {
 
-// Each find_ answers: does this folder hold a recording of that format, and if so, what is in it?
-// Nothing if it does not. All text files are read and checked here, images are not. Throws
-// InputError naming the file (and line) that is missing or broken, if it is needed. What is not
-// needed is warned of: ground truth and inertial measurements, rows of them, and pictures that are
-// missing, unless more than half of all are. config.camera stands in for a calibration that cannot
-// be read; without config.needs_calibration none has to be there.
+// Each find_ function reads the folder if it holds a recording of that format; nothing if it does
+// not. All text files are read and checked here, images are not. Throws InputError naming the file
+// (and line) that is missing or broken, if it is needed. What is not needed is warned of: ground
+// truth and inertial measurements, rows of them, and pictures that are missing, unless more than
+// half of all are. config.camera stands in for a calibration that cannot be read; without
+// config.needs_calibration none has to be there.
 
 // rgb.txt and depth.txt (lines `stamp filename`, or `stamp,filename`), groundtruth.txt, camera.txt.
 // Without depth.txt or rgb.txt, the pairs of associations.txt (list_file.hpp; also associate.txt,

@@ -12,7 +12,7 @@
 namespace samewhere::input {
 namespace {
 
-// Tells both sides that there is nothing more to come, or nobody to take it.
+// Tells both sides that there is nothing more to come, or that no frame is taken any more.
 class Closing {
  public:
   explicit Closing(core::Channel<core::Frame>& frames) : frames_(frames) {}
@@ -74,7 +74,7 @@ class NewestSource : public core::Source {
     }
   }
 
-  // Looks up now and then: no signal wakes who waits.
+  // Polls: a signal wakes no waiting thread.
   bool wait_by_clock(double since_first_s) {
     constexpr double kLook_s = 0.1;
     if (!start_) start_ = Clock::now();

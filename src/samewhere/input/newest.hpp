@@ -18,9 +18,9 @@ std::unique_ptr<core::Source> newest(std::unique_ptr<core::Source> source);
 using WaitUntil = std::function<bool(double since_first_s)>;
 
 // The same for a recording, as if it were live: each frame comes as long after the first as its
-// stamp is, or as soon as it can be read, and the first when somebody asks for it. After Ctrl-C no
-// more come, however long the next would have been waited for. Of a source whose frames nobody
-// knows by their position: truth() is that of all frames. An empty `wait` goes by the clock.
+// stamp is, or as soon as it can be read, and the first on the first call. After Ctrl-C no more
+// come, without waiting for the next. For sources whose truth does not refer to frame positions:
+// truth() is that of all frames. An empty `wait` goes by the clock.
 std::unique_ptr<core::Source> played(std::unique_ptr<core::Source> source, WaitUntil wait = {});
 
 }  // namespace samewhere::input

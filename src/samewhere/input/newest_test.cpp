@@ -23,7 +23,7 @@ class Camera : public core::Source {
   core::Truth truth() const override { return {}; }
   std::optional<core::Frame> next() override {
     if (num_given_ == slow_at_) leave_.receive();
-    if (num_given_ == num_frames_) throw core::InputError("somebody pulled the plug");
+    if (num_given_ == num_frames_) throw core::InputError("the camera was unplugged");
     core::Frame frame;
     frame.id = core::FrameId(static_cast<std::uint64_t>(num_given_));
     frame.stamp_s = num_given_++;
@@ -70,7 +70,7 @@ TEST(Newest, AReaderThatWaitsMissesNothing) {
   EXPECT_EQ(second.num_dropped_before, 0);
 }
 
-TEST(Newest, ItMayBeDestroyedWhileNobodyListens) {
+TEST(Newest, ItMayBeDestroyedWhileNoFrameIsTaken) {
   core::Channel<int> leave(1);
   leave.close();
   for (int i = 0; i < 100; ++i) {

@@ -20,7 +20,7 @@ std::unique_ptr<core::Source> open_source(const std::filesystem::path& source,
 // Whether open_source takes what is there for a video or a camera.
 bool is_video(const std::filesystem::path& source);
 
-// Where the pictures of a folder or list lie, for whoever reads them in another way. Throws
+// Where the pictures of a folder or list lie, for readers of other kinds. Throws
 // InputError as above.
 Recording read_recording(const std::filesystem::path& source, const Config& config);
 

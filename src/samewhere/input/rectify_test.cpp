@@ -32,7 +32,7 @@ constexpr core::PinholeRadtan kRight{.width_px = 640,
                                      .p1 = 0.001,
                                      .p2 = -0.0005};
 
-// Two cameras that nobody adjusted: the right one is turned, shifted and has another lens.
+// Two cameras that are not aligned: the right one is turned, shifted and has another lens.
 core::Rig crooked_rig() {
   const core::Rigid3 body_from_left{core::exp_so3({0.1, -0.2, 1.5}), {0.02, -0.06, 0.01}};
   const core::Rigid3 left_from_right{core::exp_so3({0.02, -0.03, 0.04}), {0.11, 0.004, -0.006}};

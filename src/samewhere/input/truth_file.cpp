@@ -96,8 +96,8 @@ PlaceTruthMatrix read_text_matrix(const path& file, int num_frames) {
 
 namespace {
 
-// query,match,...: frames of different places that look alike.
-std::vector<core::FramePair> read_impostors(const path& file, int num_frames) {
+// query,match,...: aliased pairs, frames of different places with similar appearance.
+std::vector<core::FramePair> read_aliased_pairs(const path& file, int num_frames) {
   const std::vector<core::TextLine> lines = read_csv_lines(file);
   std::vector<core::FramePair> pairs;
   for (std::size_t i = 1; i < lines.size(); ++i) {  // the first names the columns
@@ -182,9 +182,10 @@ core::Truth read_truth(const path& folder, int num_frames) {
     read_if_sound(kWithout,
                   [&] { truth.places = read_text_matrix(folder / "same_place.txt", num_frames); });
   }
-  if (is_there(folder / "impostors.csv")) {
-    read_if_sound(kWithout,
-                  [&] { truth.impostors = read_impostors(folder / "impostors.csv", num_frames); });
+  if (is_there(folder / "aliased_pairs.csv")) {
+    read_if_sound(kWithout, [&] {
+      truth.aliased_pairs = read_aliased_pairs(folder / "aliased_pairs.csv", num_frames);
+    });
   }
   return truth;
 }

@@ -14,7 +14,7 @@ namespace samewhere::input {
 // What lies in the folder under the names that every format shares: the trajectory in
 // groundtruth.tum; which frames show the same place in same_place.pgm (binary PGM) or, without it,
 // same_place.txt (one row of numbers per query), both with 1 = same, 2 = near, 0 = different;
-// which pairs are impostors in impostors.csv (a line of names, then query,match,...).
+// aliased pairs in aliased_pairs.csv (a line of names, then query,match,...).
 // What is broken is warned of in the log and left out: rows of a trajectory, a matrix that is not
 // num_frames x num_frames, a file that cannot be read. Truth is not needed for a run.
 core::Truth read_truth(const std::filesystem::path& folder, int num_frames);

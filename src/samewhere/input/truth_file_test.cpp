@@ -32,7 +32,7 @@ TEST_F(TruthFile, AFolderWithoutTruthHasNone) {
 }
 
 TEST_F(TruthFile, APgmTellsSameNearAndDifferentByRowAndColumn) {
-  folder_.write("same_place.pgm", std::string("P5\n# who made it\n2 2\n2\n\1\2\0\1", 27));
+  folder_.write("same_place.pgm", std::string("P5\n# comment\n2 2\n2\n\1\2\0\1", 27));
   const core::Truth truth = read_truth(folder_.root(), 2);
   ASSERT_TRUE(truth.places);
   EXPECT_EQ(truth.places->num_frames, 2);
@@ -101,17 +101,18 @@ TEST_F(TruthFile, AMatrixThatScalesMirrorsOrProjectsIsRefused) {
   EXPECT_THAT(refusal(std::vector<double>(16, 0.0)), is_refused);
 }
 
-TEST_F(TruthFile, ImpostorsAreReadAndAFrameThatIsNotThereIsNamed) {
-  folder_.write("impostors.csv", "query,match,alike\n2,1,0.5\n1,0,0.4\n");
+TEST_F(TruthFile, AliasedPairsAreReadAndAFrameThatIsNotThereIsNamed) {
+  folder_.write("aliased_pairs.csv", "query,match,alike\n2,1,0.5\n1,0,0.4\n");
   const core::Truth truth = read_truth(folder_.root(), 3);
-  ASSERT_EQ(truth.impostors.size(), 2U);
-  EXPECT_EQ(truth.impostors[0].query, 1);
-  EXPECT_EQ(truth.impostors[1].match, 1);
+  ASSERT_EQ(truth.aliased_pairs.size(), 2U);
+  EXPECT_EQ(truth.aliased_pairs[0].query, 1);
+  EXPECT_EQ(truth.aliased_pairs[1].match, 1);
   for (const char* line : {"3,1,0.5", "1,1,0.5", "1,-1,0.5", "1.5,0,0.5", "2"}) {
-    folder_.write("impostors.csv", std::string("query,match,alike\n") + line + "\n");
+    folder_.write("aliased_pairs.csv", std::string("query,match,alike\n") + line + "\n");
     testing::internal::CaptureStdout();
-    EXPECT_TRUE(read_truth(folder_.root(), 3).impostors.empty());
-    EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("impostors.csv, line 2")) << line;
+    EXPECT_TRUE(read_truth(folder_.root(), 3).aliased_pairs.empty());
+    EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("aliased_pairs.csv, line 2"))
+        << line;
   }
 }
 

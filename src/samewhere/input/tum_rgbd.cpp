@@ -57,8 +57,8 @@ double smallest_difference_s(const std::vector<double>& a_s, const std::vector<d
       list.string(), smallest_difference_s(colour_s, depth_s), max_difference_s, kWayOut));
 }
 
-// Pictures here and there without depth are usual. If none has any, the lists do not belong
-// together, and a run without scale is not what somebody with a depth camera expects.
+// Single images without depth are usual. If none has depth, the lists do not belong together, and a
+// run without scale is not what the user of a depth camera expects.
 void attach_depth(const path& folder, double max_difference_s, std::vector<FrameFiles>& frames) {
   const path list = folder / "depth.txt";
   const std::vector<StampedFile> depths = read_stamped_files(list);

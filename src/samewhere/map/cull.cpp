@@ -121,7 +121,8 @@ scene::Edit cull_around(const MapVersion& map, KeyframeId newest, const Config& 
       map, of_age(map, newest, config.cull_after_keyframes), edit, [&](const Landmark& landmark) {
         return is_unsupported(map, landmark) || is_missed(map, landmark, config, features);
       });
-  cull_landmarks(map, of_age(map, newest, config.forget_after_keyframes), edit, is_seen_once);
+  cull_landmarks(map, of_age(map, newest, config.cull_unmatched_after_keyframes), edit,
+                 is_seen_once);
   if (const auto keyframe = most_redundant(map, newest, config))
     edit.culled_keyframes.push_back(*keyframe);
   return edit;

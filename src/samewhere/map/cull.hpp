@@ -6,13 +6,14 @@
 
 namespace samewhere::map {
 
-// The edit that takes out what did not prove itself:
-// - Landmarks that the keyframe `cull_after_keyframes` before the newest brought, if too few of the
-//   keyframes since then that should see them do, or if one observation without depth is all that
-//   is left. A camera that turns away proves nothing.
-// - Landmarks that the keyframe `forget_after_keyframes` before the newest brought and no second
-//   keyframe saw, wherever the camera looked: most points of a cluttered view are never found
-//   again, and a map that kept them all would grow without end.
+// The edit that culls:
+// - Landmarks of the keyframe `cull_after_keyframes` before the newest, if too few of the keyframes
+//   since then in which they should be visible observe them, or if a single observation without
+//   depth is left.
+// - Landmarks of the keyframe `cull_unmatched_after_keyframes` before the newest that no second
+// keyframe
+//   observed: most points of a cluttered view are never matched again, and a map that kept them all
+//   would grow without bound.
 // - At most one keyframe: that of the newest one's neighbours of whose landmarks three others see
 //   the largest share, on the same or a finer level of the pyramid, if that share is large enough.
 //   Never one without odometry, one that a loop edge holds, or one of the latest.

@@ -68,7 +68,7 @@ TEST(FullBundle, EachKeyframeHasAboutAsManyObservationsAsItMay) {
           .free.empty());
 }
 
-TEST(FullBundle, WhoCameMeanwhileMovesWithItsAncestors) {
+TEST(FullBundle, ALaterKeyframeMovesWithItsAncestors) {
   const features::TestWorld world = features::test_world(4, 2000);
   const MapVersion then = test_map(world, 12, 0.01);
   const scene::Edit found = found_for(then);
@@ -143,7 +143,7 @@ TEST(FullBundle, WithoutDepthTwoKeyframesHoldItAndLengthsAreStretched) {
   const MapVersion bundled = apply(map, full_bundle(map, window, {}));
   EXPECT_GT(worst_error(map), 0.1);
   EXPECT_LT(worst_error(bundled), 0.03);
-  // who took no part is stretched with who it hangs on
+  // a keyframe outside the window is scaled with the one it hangs on
   const std::set<core::LandmarkId> taking_part(window.landmarks.begin(), window.landmarks.end());
   const core::KeyframeId last(8);
   double ratio = 0.0;

@@ -27,8 +27,8 @@ std::set<KeyframeId> free_keyframes(const MapVersion& map, KeyframeId keyframe,
   return free;
 }
 
-// What the free keyframes see and somebody else, too; most observations first, as many as the
-// bundle may have.
+// Landmarks of the free keyframes that another keyframe observes, too; most observations first, up
+// to the limit of the bundle.
 std::vector<LandmarkId> bundled_landmarks(const MapVersion& map, const std::set<KeyframeId>& free,
                                           int max_observations) {
   std::set<LandmarkId> seen;

@@ -18,8 +18,8 @@ double median_depth_m(const features::View& view) {
   return core::median(std::move(depths)).value_or(0.0F);
 }
 
-// Landmarks that a second keyframe shows too. What only one has shown may never be found again: it
-// says nothing of how much of the reference is still in sight. Of the first keyframe all.
+// Landmarks that a second keyframe observes too. Those of one keyframe may never be matched again
+// and do not tell how much of the reference is still visible. Of the first keyframe all.
 int num_proven_landmarks(const scene::MapVersion& map, const scene::Keyframe& keyframe) {
   const std::size_t min_observations = map.keyframes.size() > 2 ? 2 : 1;
   return static_cast<int>(
@@ -38,18 +38,15 @@ std::optional<double> first_stamp_s(const scene::MapVersion& map, std::uint16_t 
   return first_s;
 }
 
-// A camera that stays in one room sees it all again within minutes; shorter recordings are as if
-// there were no such rule.
-constexpr double kKnownAfter_s = 120.0;
-constexpr int kMinKnown = 75;  // landmarks: by so many a pose is sure
-
-// Whether the map has known what the view shows for so long that one more keyframe says nothing
-// new: of the landmarks that it shows most, and enough, were seen by two keyframes, one of them
-// before that. Stamps of an earlier session do not compare: it counts as the begin of this one.
-bool is_long_known(const scene::MapVersion& map, const scene::TrackedView& tracked) {
+// Whether most landmarks of the view, and enough, were observed by two keyframes, one of them more
+// than `known_after_s` ago: another keyframe adds no information. A camera that stays in one room
+// observes it anew within minutes; shorter recordings are not affected. Stamps of an earlier
+// session do not compare: its keyframes count as older.
+bool is_of_known_place(const scene::MapVersion& map, const scene::TrackedView& tracked,
+                       const Config& config) {
   const std::uint16_t session = tracked.view.frame.session();
   const auto session_begin_s = first_stamp_s(map, session);
-  const double latest_s = tracked.view.stamp_s - kKnownAfter_s;
+  const double latest_s = tracked.view.stamp_s - config.known_after_s;
   if (!session_begin_s || *session_begin_s > latest_s) return false;
   const auto is_old = [&](const scene::Observation& o) {
     const features::View& view = map.at(o.keyframe).view;
@@ -62,7 +59,7 @@ bool is_long_known(const scene::MapVersion& map, const scene::TrackedView& track
                std::any_of(observations.begin(), observations.end(), is_old);
       }));
   const auto num_tracked = static_cast<int>(tracked.landmarks.size());
-  return num_known >= kMinKnown && 2 * num_known > num_tracked;
+  return num_known >= config.min_known_landmarks && 2 * num_known > num_tracked;
 }
 
 // A landmark at feature `slot` of a new keyframe; nothing where depth is unknown.
@@ -162,7 +159,7 @@ bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tr
   const auto num_tracked = static_cast<int>(tracked.landmarks.size());
   const bool has_lost_sight = num_tracked < min_tracked_ratio * num_in_reference;
   const bool shows_new = is_far || is_turned || has_lost_sight || num_tracked < config.min_tracked;
-  return shows_new && !is_long_known(map, tracked);
+  return shows_new && !is_of_known_place(map, tracked, config);
 }
 
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,

@@ -10,7 +10,7 @@
 
 namespace samewhere::map {
 
-// Two views without depth, how they stand to each other, and the points that both see.
+// Two views without depth, their relative pose, and the points observed by both.
 struct ViewPair {
   features::View first;
   features::View second;
@@ -30,16 +30,15 @@ bool can_start(const features::View& view, const Config& config);
 // the map was started without.
 bool can_keep(const scene::MapVersion& map, const features::View& view, const Config& config);
 
-// What tracking looks for around a keyframe.
+// The local map of tracking around a keyframe.
 scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId reference,
                           const Config& config);
 
-// Median depth of the landmarks that the view shows, along its optical axis, map units; 0: it shows
-// none.
+// Median depth of the visible landmarks of the view along its optical axis, map units; 0: none.
 double median_landmark_depth(const scene::MapVersion& map, const scene::TrackedView& tracked);
 
-// Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
-// lost sight of it; and keyframes of two minutes ago do not see most of what it shows.
+// Keyframe decision: whether the view moved or turned far from its reference keyframe or tracks few
+// of its landmarks, and keyframes of two minutes ago do not observe most of it.
 bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked,
                       const Config& config);
 
@@ -47,11 +46,10 @@ bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tr
 // stands at `world_from_body`.
 scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
                       const core::Rigid3& world_from_body);
-// The edit that makes two views the next keyframes, the first of a session at the world's origin:
-// they stand to each other, and to none that was there before.
+// The edit that inserts two views as keyframes, the first of a session at the origin of the world,
+// with their relative pose and without an edge to earlier keyframes.
 scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair);
-// The edit after which the map shows nothing: every landmark is culled. The keyframes stay, as
-// pictures of the past.
+// The reset: an edit that culls every landmark. The keyframes stay for place recognition.
 scene::Edit give_up(const scene::MapVersion& map);
 scene::Edit add_keyframe(const scene::MapVersion& map, const scene::TrackedView& tracked);
 

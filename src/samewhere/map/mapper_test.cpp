@@ -228,7 +228,7 @@ TEST_F(WithoutDepth, AViewIsKeptWhenItMovedOrLostSightOfSomeLandmarks) {
   EXPECT_TRUE(is_worth_keeping(map_, tracked_at(moved(0.8), 1.0), config_));
 }
 
-TEST_F(WithoutDepth, AMapThatIsGivenUpBeginsAnewBesideItsOldKeyframes) {
+TEST_F(WithoutDepth, AfterAResetTheMapIsInitializedBesideItsOldKeyframes) {
   const scene::MapVersion given_up = apply(map_, give_up(map_));
   EXPECT_EQ(num_live(given_up.landmarks), 0U);
   EXPECT_EQ(num_live(given_up.keyframes), 2U);
@@ -238,7 +238,7 @@ TEST_F(WithoutDepth, AMapThatIsGivenUpBeginsAnewBesideItsOldKeyframes) {
   pair.points_in_first = {{0.0, 0.0, 2.0}, {0.5, 0.0, 2.0}};
   const scene::MapVersion anew = apply(given_up, start_map(given_up, pair));
   ASSERT_EQ(anew.keyframes.size(), 4U);
-  EXPECT_FALSE(anew.keyframes[2].odometry) << "nobody knows where it stands to the old ones";
+  EXPECT_FALSE(anew.keyframes[2].odometry) << "its pose relative to the old keyframes is unknown";
   EXPECT_EQ(anew.keyframes[3].odometry->parent, core::KeyframeId(2));
   EXPECT_EQ(num_live(anew.landmarks), 2U);
   const scene::Landmark& first = anew.landmarks[given_up.landmarks.size()];

@@ -8,9 +8,9 @@
 
 namespace samewhere::map {
 
-// Two places that a loop had made one were parted: `before` is the map with the loop, `after` the
-// one without it, its poses solved anew. The edits, to be applied to `after` in order, that take
-// out what is far off now (three times the limit of an inlier, in pixels):
+// A loop was withdrawn: `before` is the map with the loop, `after` the one without it, optimized
+// again. The edits, to be applied to `after` in order, that undo what no longer fits (three times
+// the inlier limit, in pixels):
 // - merges with younger landmarks, or for other loops, made while the loop was there, if most of
 //   the observations that came with them are (scene::withdraw() has taken the others back);
 // - sightings that fitted before (chi-square at 95 %); one that fits another of the landmarks that
@@ -22,8 +22,8 @@ std::vector<scene::Edit> part_places(const scene::MapVersion& before,
                                      const scene::MapVersion& after,
                                      const features::Config& features);
 
-// Of the landmarks that the view shows, those that the map still has there. To be asked when places
-// were parted after the view was tracked.
+// Of the landmarks that the view observes, those that the map still has there. For a view that was
+// tracked before places were parted.
 scene::TrackedView without_parted(const scene::MapVersion& map, scene::TrackedView tracked,
                                   const features::Config& features);
 

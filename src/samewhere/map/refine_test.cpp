@@ -250,7 +250,7 @@ bool is_of_second_fifth(const scene::MapVersion& map, core::LandmarkId id) {
   return map.at(id).anchor == core::KeyframeId(1) && id.index() % 5 == 0;
 }
 
-TEST(Cull, ALandmarkThatNobodyFindsAgainGoes) {
+TEST(Cull, ALandmarkThatIsNeverMatchedAgainIsCulled) {
   const features::TestWorld world = features::test_world(5, 2000);
   scene::MapVersion map = test_map(world, 2);
   const auto is_lost = [&](core::LandmarkId id) { return is_of_second_fifth(map, id); };
@@ -274,7 +274,7 @@ TEST(Cull, WhatIsOutOfSightStaysUntilItIsForgottenUnlessTwoHaveSeenIt) {
     map = apply(map, add_keyframe(map, test_tracked(map, view, pose, is_lost)));
   }
   EXPECT_TRUE(cull_around(map, newest(map).id, {}, {}).culled_landmarks.empty());
-  const Config soon{.cull_after_keyframes = 2, .forget_after_keyframes = 3};
+  const Config soon{.cull_after_keyframes = 2, .cull_unmatched_after_keyframes = 3};
   const scene::Edit edit = cull_around(map, newest(map).id, soon, {});
   const std::set<core::LandmarkId> gone(edit.culled_landmarks.begin(), edit.culled_landmarks.end());
   int num_seen_by_two = 0;
@@ -312,13 +312,13 @@ std::pair<std::size_t, std::size_t> size_after_swaying(int num_views, const Conf
 }
 
 // Nothing is blamed for not being found: that would hide what forgetting does.
-TEST(Cull, WhoStaysWhereHeIsHasAMapThatHardlyGrows) {
+TEST(Cull, TheMapOfAStationaryCameraHardlyGrows) {
   const Config config{.min_found_ratio = 0.0};
   const auto [num_keyframes, num_landmarks] = size_after_swaying(20, config);
   const auto [num_later, num_landmarks_later] = size_after_swaying(60, config);
   EXPECT_LE(num_later, num_keyframes + 2);
   EXPECT_LE(num_landmarks_later, num_landmarks + num_landmarks / 10);
-  const Config forgetting_nothing{.forget_after_keyframes = 10000, .min_found_ratio = 0.0};
+  const Config forgetting_nothing{.cull_unmatched_after_keyframes = 10000, .min_found_ratio = 0.0};
   const auto [num_kept, num_landmarks_kept] = size_after_swaying(60, forgetting_nothing);
   EXPECT_GT(num_kept, 2 * num_later);
   EXPECT_GT(num_landmarks_kept, 2 * num_landmarks_later);

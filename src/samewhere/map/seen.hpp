@@ -10,12 +10,12 @@
 
 namespace samewhere::map {
 
-// What feature `slot` of the view measures, as the solvers take it: sigma grows with the octave.
+// The measurement of feature `slot` of the view for the solvers: sigma grows with the octave.
 optimize::SeenAt seen_at(const features::View& view, int slot, const features::Config& config);
 
 core::Rigid3 camera_from_world(const scene::MapVersion& map, const scene::Keyframe& keyframe);
 
-// How far the point is from what the feature shows, in standard deviations.
+// Reprojection error of the point at the feature, in standard deviations.
 optimize::Reprojection reproject(const features::View& view, int slot,
                                  const Eigen::Vector3d& point_in_camera,
                                  const features::Config& config);
@@ -28,7 +28,7 @@ std::optional<features::ProjectedPoint> expected_at(const scene::MapVersion& map
                                                     const scene::Landmark& landmark,
                                                     const features::Config& config);
 
-// Whether the keyframe is among those that see the landmark.
+// Whether the keyframe observes the landmark.
 bool is_seen_by(const scene::Landmark& landmark, core::KeyframeId keyframe);
 
 }  // namespace samewhere::map

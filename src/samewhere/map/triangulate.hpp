@@ -6,12 +6,12 @@
 
 namespace samewhere::map {
 
-// The edit that makes landmarks of features without depth, of this keyframe and of those that share
-// most landmarks with it: two features that show no landmark yet, lie on each other's epipolar
-// line, look alike and like nothing else there. Refused: rays with too small an angle between them,
-// points behind a camera or off either pixel (chi-square at 95 %), and ranges that do not go with
-// the levels of the pyramid on which the two were found. In a monocular map all landmarks come from
-// here. Source: Mur-Artal, Montiel and Tardos, IEEE T-RO 2015, section VI.C.
+// The edit that triangulates landmarks from features without depth of this keyframe and of its most
+// covisible keyframes: two features without a landmark, on each other's epipolar line, with similar
+// and unambiguous descriptors. Rejected: small parallax, points behind a camera, large reprojection
+// errors (chi-square at 95 %), and ranges inconsistent with the pyramid levels of the two features.
+// In a monocular map all landmarks come from here. Source: Mur-Artal, Montiel and Tardos, IEEE T-RO
+// 2015, section VI.C.
 scene::Edit triangulate_landmarks(const scene::MapVersion& map, core::KeyframeId keyframe,
                                   const Config& config, const features::Config& features);
 

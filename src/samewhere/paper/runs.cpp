@@ -24,9 +24,9 @@ PausedLoops loops_of(const std::vector<evaluate::Match>& matches, const core::Tr
   const int window_frames = config.retrieve.window_frames;
   const std::vector<evaluate::Match> accepted = accepted_with_pause(matches, config.verify);
   PausedLoops loops{evaluate::count_accepted(*truth.places, accepted, window_frames), std::nullopt};
-  if (!truth.impostors.empty())
-    loops.num_impostors =
-        evaluate::count_accepted_impostors(truth.impostors, accepted, window_frames);
+  if (!truth.aliased_pairs.empty())
+    loops.num_aliased =
+        evaluate::count_accepted_aliased(truth.aliased_pairs, accepted, window_frames);
   return loops;
 }
 

@@ -21,7 +21,7 @@ struct PaperPlan {
 // Loops accepted as the published Table 6 counts them.
 struct PausedLoops {
   evaluate::AcceptedCounts counts;
-  std::optional<int> num_impostors;  // of the wrong ones; only if the truth names any
+  std::optional<int> num_aliased;  // of the false ones; only if the truth names any
 };
 
 // One search of every view among the older ones.

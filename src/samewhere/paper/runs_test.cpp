@@ -23,9 +23,9 @@ TEST(PaperRuns, OfSixViewsAreWhatTheHandCounts) {
   EXPECT_EQ(exact.search, retrieve::Search::kExact);
   EXPECT_NEAR(exact.result.auc, kSecondLapAuc, 1e-12);
   EXPECT_EQ(exact.result.num_with_loop, 3);
-  EXPECT_EQ(exact.loops.counts.num_right, 2);
-  EXPECT_EQ(exact.loops.counts.num_wrong, 1);
-  EXPECT_EQ(exact.loops.num_impostors, 1);
+  EXPECT_EQ(exact.loops.counts.num_true, 2);
+  EXPECT_EQ(exact.loops.counts.num_false, 1);
+  EXPECT_EQ(exact.loops.num_aliased, 1);
   EXPECT_EQ(exact.search_ms.size(), 6u);
   EXPECT_EQ(exact.exact_similarity_ms.size(), 6u);
 }
@@ -61,12 +61,12 @@ TEST(PaperRuns, AfterALoopDetectionPauses) {
   config.verify.pause_frames = 1;
   const PaperRun exact = block_of(config).runs.back();
   // the wrong one comes one frame after the first
-  EXPECT_EQ(exact.loops.counts.num_right, 2);
-  EXPECT_EQ(exact.loops.counts.num_wrong, 0);
-  EXPECT_EQ(exact.loops.num_impostors, 0);
+  EXPECT_EQ(exact.loops.counts.num_true, 2);
+  EXPECT_EQ(exact.loops.counts.num_false, 0);
+  EXPECT_EQ(exact.loops.num_aliased, 0);
   EXPECT_NEAR(exact.result.auc, kSecondLapAuc, 1e-12) << "the curve knows no pause";
   config.verify.pause_frames = 10;
-  EXPECT_EQ(block_of(config).runs.back().loops.counts.num_right, 1);
+  EXPECT_EQ(block_of(config).runs.back().loops.counts.num_true, 1);
 }
 
 TEST(PaperRuns, ALoopIsMoreSimilarThanTheThreshold) {

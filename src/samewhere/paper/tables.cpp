@@ -162,11 +162,11 @@ std::string table_3(const PaperBlock& block, const std::vector<Column>& columns)
                      block.timed_frames.size());
 }
 
-// Nothing where no loop was right or wrong: none is no perfection.
-std::optional<double> share_wrong(const PaperRun& run) {
-  const int num_judged = run.loops.counts.num_right + run.loops.counts.num_wrong;
-  if (num_judged == 0) return std::nullopt;
-  return static_cast<double>(run.loops.counts.num_wrong) / num_judged;
+// Nothing without a true or false loop.
+std::optional<double> share_of_false(const PaperRun& run) {
+  const int num_classified = run.loops.counts.num_true + run.loops.counts.num_false;
+  if (num_classified == 0) return std::nullopt;
+  return static_cast<double>(run.loops.counts.num_false) / num_classified;
 }
 
 std::string table_6(const PaperBlock& block, const std::vector<Column>& columns) {
@@ -175,22 +175,22 @@ std::string table_6(const PaperBlock& block, const std::vector<Column>& columns)
     add_figure(table, columns, name, figure, num_digits);
   };
   add(
-      "right", [](const PaperRun& run) { return run.loops.counts.num_right; }, 1);
+      "true", [](const PaperRun& run) { return run.loops.counts.num_true; }, 1);
   add(
-      "wrong", [](const PaperRun& run) { return run.loops.counts.num_wrong; }, 1);
-  if (block.runs.front().loops.num_impostors)
+      "false", [](const PaperRun& run) { return run.loops.counts.num_false; }, 1);
+  if (block.runs.front().loops.num_aliased)
     add(
-        "  of these impostors",
-        [](const PaperRun& run) { return run.loops.num_impostors.value_or(0); }, 1);
+        "  of aliased pairs", [](const PaperRun& run) { return run.loops.num_aliased.value_or(0); },
+        1);
   add(
-      "near, counted as neither", [](const PaperRun& run) { return run.loops.counts.num_near; }, 1);
-  add("wrong / (right + wrong)", share_wrong, 3);
+      "near, not counted", [](const PaperRun& run) { return run.loops.counts.num_near; }, 1);
+  add("false / (true + false)", share_of_false, 3);
   std::string text = report::as_text(table);
   text +=
       fmt::format("accepted above an NCC of {:g}, with a pause of {} frames{}\n",
                   block.min_similarity, block.pause_frames,
-                  block.runs.front().loops.num_impostors ? "" : "; the truth lists no impostors");
-  text += "published at L = 50, right/wrong:";
+                  block.runs.front().loops.num_aliased ? "" : "; the truth lists no aliased pairs");
+  text += "published at L = 50, true/false:";
   for (const PublishedSequence& published : kPublishedSequences)
     fmt::format_to(std::back_inserter(text), " {} {}", published.name, published.loops);
   return text + "\n";
@@ -208,9 +208,9 @@ Row search_row(const PaperRun& run) {
           fmt::format("{:.6f}", result.recall_at_full_precision),
           fmt::format("{:.6f}", result.precision_at_recall_35),
           fmt::format("{:.6f}", result.precision_at_recall_70),
-          std::to_string(loops.counts.num_right),
-          std::to_string(loops.counts.num_wrong),
-          loops.num_impostors ? std::to_string(*loops.num_impostors) : "",
+          std::to_string(loops.counts.num_true),
+          std::to_string(loops.counts.num_false),
+          loops.num_aliased ? std::to_string(*loops.num_aliased) : "",
           std::to_string(loops.counts.num_near)};
 }
 
@@ -253,7 +253,7 @@ std::string searches_csv(const std::vector<PaperBlock>& blocks) {
   report::Table table{
       {"recording", "describer", "describer_checksum", "window_frames", "draws", "seed", "queries",
        "with_loop", "auc", "recall_at_full_precision", "precision_at_recall_35",
-       "precision_at_recall_70", "loops_right", "loops_wrong", "loops_impostors", "loops_near"},
+       "precision_at_recall_70", "loops_true", "loops_false", "loops_aliased", "loops_near"},
       {}};
   for (const PaperBlock& block : blocks) {
     for (const PaperRun& run : block.runs) {

@@ -43,9 +43,9 @@ TEST(PaperTables, ShowWhatWasCountedByHand) {
   EXPECT_EQ(cells_of(text, "precision at recall .35"), (Cells{"0.6667", "0.6667", "0.6667"}));
   EXPECT_EQ(cells_of(text, "precision at recall .70"), (Cells{"0.0000", "0.0000", "0.0000"}));
   EXPECT_EQ(cells_of(text, "preprocess and describe, median"), (Cells{"2.000", "2.000", "2.000"}));
-  EXPECT_EQ(cells_of(text, "right"), (Cells{"2.0", "2.0", "2.0"}));
-  EXPECT_EQ(cells_of(text, "wrong"), (Cells{"1.0", "1.0", "1.0"}));
-  EXPECT_EQ(cells_of(text, "  of these impostors"), (Cells{"1.0", "1.0", "1.0"}));
+  EXPECT_EQ(cells_of(text, "true"), (Cells{"2.0", "2.0", "2.0"}));
+  EXPECT_EQ(cells_of(text, "false"), (Cells{"1.0", "1.0", "1.0"}));
+  EXPECT_EQ(cells_of(text, "  of aliased pairs"), (Cells{"1.0", "1.0", "1.0"}));
 }
 
 TEST(PaperTables, PublishedFiguresStandUnderTheirNumberOfDraws) {
@@ -87,7 +87,7 @@ TEST(PaperTables, EverySearchHasARowAndEveryStepATime) {
 TEST(PaperTables, NoLoopIsNoPerfection) {
   PaperBlock block = sample_block();
   for (PaperRun& run : block.runs) run.loops.counts = {};
-  EXPECT_EQ(cells_of(paper_text(block, {6}), "wrong / (right + wrong)"),
+  EXPECT_EQ(cells_of(paper_text(block, {6}), "false / (true + false)"),
             (std::vector<std::string>{"-", "-", "-"}));
 }
 

@@ -10,9 +10,9 @@
 namespace samewhere::paper {
 
 // Six made-up views, for tests only. Frames 3, 4, 5 come back to 0, 1, 2. Number 3 looks like 0,
-// which is right; number 4 also looks like 0, a bit less, which is wrong and listed as an impostor;
-// number 5 looks like 2, still less, which is right. So the precisions at recalls of 1/3, 1/3 and
-// 2/3 are 1, 1/2 and 2/3.
+// which is true; number 4 also looks like 0, a bit less, which is false and listed as an aliased
+// pair; number 5 looks like 2, still less, which is right. So the precisions at recalls of 1/3, 1/3
+// and 2/3 are 1, 1/2 and 2/3.
 inline DescribedRecording second_lap() {
   const std::vector<std::vector<float>> views = {
       {1, 0, 0, 0, 0, 0, 0, 0},   {0, 1, 0, 0, 0, 0, 0, 0},   {0, 0, 1, 0, 0, 0, 0, 0},
@@ -38,7 +38,7 @@ inline DescribedRecording second_lap() {
     }
   }
   recording.truth.places = places;
-  recording.truth.impostors = {{4, 0}};
+  recording.truth.aliased_pairs = {{4, 0}};
   recording.by_describer.push_back(described);
   return recording;
 }

@@ -6,10 +6,43 @@
 #include <samewhere/pipeline/profiles.hpp>
 
 namespace samewhere::pipeline {
+namespace {
+
+struct RenamedKey {
+  std::string_view old_path;
+  std::string_view path;  // empty: removed
+};
+
+constexpr RenamedKey kRenamedKeys[] = {
+    {"map.forget_after_keyframes", "map.cull_unmatched_after_keyframes"},
+    {"retrieve.lost_candidates", "retrieve.relocalization_candidates"},
+    {"retrieve.lost_place_frames", "retrieve.relocalization_place_frames"},
+    {"retrieve.views_of_place", "retrieve.views_per_place"},
+    {"track.lost", "track.relocalization"},
+    {"track.min_share_by_depth", "track.depth_alignment.min_agreement"},
+    {"track.start", "track.initialization"},
+    {"track.initialization.max_rival_ratio", "track.initialization.max_competing_ratio"},
+    {"track.relocalization.frames_to_restart", "track.relocalization.reinitialize_after_frames"},
+    {"track.relocalization.max_rival_ratio", "track.relocalization.max_competing_ratio"},
+    {"track.relocalization.views_to_resume", "track.relocalization.min_views"},
+    {"verify.look_around_frames", "verify.neighbour_frames"},
+    {"verify.max_disagreement_m", "verify.max_pose_difference_m"},
+    {"verify.max_disagreement_rad", "verify.max_pose_difference_rad"},
+    {"verify.max_other_place_ratio", "verify.max_competing_place_ratio"},
+    {"verify.max_rival_chi_square", "verify.max_competing_chi_square"},
+    {"verify.min_rival_gain", "verify.min_competing_gain"},
+    {"verify.wait_views", "verify.max_pending_views"},
+};
+
+}  // namespace
+
+void visit_renamed_keys(core::FieldVisitor& visit) {
+  for (const RenamedKey& key : kRenamedKeys) visit.renamed(key.old_path, key.path);
+}
 
 features::Config features_of_lost(const Config& config, bool is_without_depth) {
   features::Config features = config.features;
-  if (is_without_depth) features.max_ratio = config.track.lost.max_ratio_without_depth;
+  if (is_without_depth) features.max_ratio = config.track.relocalization.max_ratio_without_depth;
   return features;
 }
 

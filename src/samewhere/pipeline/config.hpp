@@ -35,30 +35,36 @@ struct Config {
   dense::Config dense;
 };
 
+// The keys of earlier versions, with their names now: the reader refuses the old ones.
+void visit_renamed_keys(core::FieldVisitor& visit);
+
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit_renamed_keys(visit);
   visit("source", config.source,
-        {.help = "what was run; written by the program, read by `samewhere eval`"});
-  visit("seed", config.seed, {.help = "of everything random", .min = 0});
+        {.help = "recording that was run; written by the program, read by `samewhere eval`"});
+  visit("seed", config.seed, {.help = "seed of all random numbers", .min = 0});
   visit("threads", config.threads,
-        {.help = "`run`: tracking, mapping and loop closing in a thread each; `loops`: describing, "
-                 "searching and judging; the results are the same"});
+        {.help = "`run`: tracking, mapping and loop closing in a thread each; `loops`: "
+                 "description, retrieval and verification; the results are identical"});
   visit("close_loops", config.close_loops,
-        {.help = "`run`: places seen before are looked for and correct the map; false: nothing is "
-                 "corrected, but who is lost is still looked for"});
+        {.help = "`run`: accepted loops correct the map; false: loop closing is off, "
+                 "relocalization is not"});
   visit("input", config.input, {.help = "Reading recordings"});
-  visit("twin", config.twin, {.help = "The twin building"});
-  visit("features", config.features, {.help = "Points of interest and their matches"});
-  visit("describe", config.describe, {.help = "What a whole view looks like"});
-  visit("retrieve", config.retrieve, {.help = "Which earlier views look alike"});
-  visit("track", config.track, {.help = "Where the camera is"});
-  visit("map", config.map, {.help = "Which views are kept"});
-  visit("verify", config.verify, {.help = "Whether a candidate is the same place"});
-  visit("optimize", config.optimize, {.help = "Solvers"});
-  visit("dense", config.dense, {.help = "Cloud, grid and octree of a finished run"});
+  const bool renders = config.source.empty() || config.source.starts_with("twin:");
+  visit("twin", config.twin, {.help = "The twin building", .is_used = renders});
+  visit("features", config.features, {.help = "ORB features and their matches"});
+  visit("describe", config.describe, {.help = "Global image descriptors"});
+  visit("retrieve", config.retrieve, {.help = "Place recognition: retrieval of loop candidates"});
+  visit("track", config.track, {.help = "Tracking"});
+  visit("map", config.map, {.help = "Mapping: keyframes, landmarks, bundle adjustment"});
+  visit("verify", config.verify, {.help = "Loop verification"});
+  visit("optimize", config.optimize, {.help = "Bundle adjustment and pose graph optimization"});
+  visit("dense", config.dense,
+        {.help = "Point cloud, occupancy grid and octree of a finished run"});
 }
 
-// How features are matched where who is lost looks for his place: that is only proposed, and held
-// against others. A loop, which bends the map, is judged by config.features as it is.
+// Feature matching in relocalization. Its hypotheses compete with each other, so that the ratio
+// test can be wider than that of loops.
 features::Config features_of_lost(const Config& config, bool is_without_depth);
 
 // Names of the built-in profiles: "default", "recognition" (of `samewhere loops`), "paper".

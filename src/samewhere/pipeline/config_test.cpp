@@ -10,14 +10,14 @@ TEST(Profiles, PaperDenoisesEqualisesAndStartsFromTheFundamentalMatrix) {
   const Config paper = profile("paper");
   EXPECT_TRUE(paper.features.denoise);
   EXPECT_TRUE(paper.features.equalize);
-  EXPECT_EQ(paper.track.start.model, track::StartModel::kFundamental);
+  EXPECT_EQ(paper.track.initialization.model, track::StartModel::kFundamental);
 }
 
 TEST(Profiles, DefaultLooksForCornersInThePictureItselfAndStartsFromTheBetterModel) {
   const Config usual = profile("default");
   EXPECT_FALSE(usual.features.denoise);
   EXPECT_FALSE(usual.features.equalize);
-  EXPECT_EQ(usual.track.start.model, track::StartModel::kHomographyOrEssential);
+  EXPECT_EQ(usual.track.initialization.model, track::StartModel::kHomographyOrEssential);
 }
 
 TEST(Profiles, RecognitionLooksHarderAndElseIsTheDefault) {
@@ -25,8 +25,8 @@ TEST(Profiles, RecognitionLooksHarderAndElseIsTheDefault) {
   Config alone = profile("recognition");
   EXPECT_GT(alone.features.num_features, usual.features.num_features);
   EXPECT_GT(alone.retrieve.word_candidates, 0);
-  EXPECT_GT(alone.verify.look_around_frames, 0);
-  EXPECT_EQ(usual.verify.look_around_frames, 0);
+  EXPECT_GT(alone.verify.neighbour_frames, 0);
+  EXPECT_EQ(usual.verify.neighbour_frames, 0);
   EXPECT_GT(alone.verify.min_inliers_in_sequence, usual.verify.min_inliers_in_sequence)
       << "the more features, the more agree by chance";
   EXPECT_GT(alone.verify.min_views, usual.verify.min_views);

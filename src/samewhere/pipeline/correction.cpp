@@ -20,7 +20,7 @@ Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
 }
 
 std::string bent_by(const correct::BentLoop& bent, const Config& config) {
-  return fmt::format("its edge is bent by chi-square {:.1f}, above {:.1f}", bent.chi2,
+  return fmt::format("chi-square of its edge {:.1f}, above {:.1f}", bent.chi2,
                      config.optimize.loop_chi2);
 }
 

@@ -198,11 +198,11 @@ TEST(Disturbance, WithDepthAMapThatIsLostBeforeItIsLargeIsGivenUpForANewOne) {
 TEST(Disturbance, WithDepthAMapThatWasFollowedForAMomentIsGivenUpHoweverLarge) {
   const auto dark = [](core::Frame frame) { return darkened(std::move(frame), 20, 80); };
   Config config = walk_config();
-  config.track.start.provisional_keyframes = 0;
+  config.track.initialization.provisional_keyframes = 0;
   const Outcome given_up = outcome_of(dark, kRight_m, config);
   for (std::size_t i = 0; i <= 80; ++i) EXPECT_FALSE(given_up.is_measured[i]) << i;
   for (std::size_t i = 82; i < kNumFrames; ++i) EXPECT_TRUE(given_up.is_measured[i]) << i;
-  config.track.start.provisional_s = 0.0;
+  config.track.initialization.provisional_s = 0.0;
   const Outcome kept = outcome_of(dark, kRight_m, config);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_TRUE(kept.is_measured[i]) << i;
 }

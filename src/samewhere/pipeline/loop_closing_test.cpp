@@ -38,7 +38,7 @@ TEST_F(LoopClosingInRooms, KeyframesThatShareLandmarksAreOnePlace) {
   for (const core::LedgerRow& row : ledger_of_walk()) ++num_candidates[row.candidate.query];
   ASSERT_EQ(num_candidates.size(), kPerRoom) << "all of the second room";
   for (const auto& [query, count] : num_candidates)
-    EXPECT_EQ(count, config_.retrieve.views_of_place) << "the first room is one place";
+    EXPECT_EQ(count, config_.retrieve.views_per_place) << "the first room is one place";
 }
 
 }  // namespace

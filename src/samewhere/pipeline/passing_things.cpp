@@ -19,7 +19,7 @@ void PassingThings::see(const core::Frame& frame, const core::FramePose& pose) {
   if (!seen_.empty() && frame.stamp_s < seen_.back().pose.stamp_s + kInterval_s) return;
   if (seen_.size() == kNumSeen) seen_.pop_front();
   seen_.push_back({pose, frame.rig->body_from_camera[0],
-                   track::NearestSurface(*frame.depth_m, frame.rig->cameras[0])});
+                   track::NearestSurface(*frame.depth_m, frame.rig->cameras[0], config_)});
 }
 
 std::vector<int> PassingThings::shown_in(const features::View& view, const core::FramePose& pose,

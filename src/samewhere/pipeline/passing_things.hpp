@@ -15,6 +15,8 @@ namespace samewhere::pipeline {
 // not to be taken for part of the building.
 class PassingThings {
  public:
+  explicit PassingThings(const track::FreeSpaceConfig& config = {}) : config_(config) {}
+
   // A frame with a pose; without depth nothing is remembered.
   void see(const core::Frame& frame, const core::FramePose& pose);
 
@@ -32,6 +34,7 @@ class PassingThings {
     core::Rigid3 body_from_camera;
     track::NearestSurface surface;
   };
+  track::FreeSpaceConfig config_;
   std::deque<Seen> seen_;  // oldest first
 };
 

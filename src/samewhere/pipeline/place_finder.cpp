@@ -274,7 +274,7 @@ bool PlaceFinder::is_rival(const Hypothesis& other, const Hypothesis& hypothesis
     }
   }
   if (by_this.num_inliers < kMinShared * by_this_in_all.num_inliers) return true;
-  const double ratio = config_.track.lost.max_rival_ratio;
+  const double ratio = config_.track.relocalization.max_competing_ratio;
   const bool explains_as_much = by_other.num_inliers > ratio * by_this.num_inliers;
   const bool is_weak = by_other_in_all.num_inliers < config_.track.weak_inliers * num_views;
   const bool is_as_true_to_itself = 1.0 * by_other.num_inliers * by_this.num_expected >

@@ -33,12 +33,12 @@ struct Proof {
 // taken is held against every other: each view is tracked among the landmarks of each, and what
 // they explain of the same views is added up. One place is found once it has explained enough
 // views, and no other about as many inliers, or as many of the landmarks that should be in sight
-// there (track.lost.max_rival_ratio). Two places are held against each other in those cells of a
-// view in which the map shows about as much at both; with hardly any, nobody can tell. Until then
-// nobody can tell, either; the places are kept, for whoever walks on learns in the end which of
-// them goes on as the views do. A place that the judge recognised in the view, though nothing can
-// be tracked there or its map shows too little, is another place all the same: while there is one,
-// nobody can tell.
+// there (track.relocalization.max_competing_ratio). Two places are held against each other in those
+// cells of a view in which the map shows about as much at both; with hardly any, nobody can tell.
+// Until then nobody can tell, either; the places are kept, for whoever walks on learns in the end
+// which of them goes on as the views do. A place that the judge recognised in the view, though
+// nothing can be tracked there or its map shows too little, is another place all the same: while
+// there is one, nobody can tell.
 class PlaceFinder {
  public:
   // Both outlive it.

@@ -103,7 +103,7 @@ TEST(Relocalisation, ALaterSessionGrowsTheMapFromWhereItIsRecognised) {
   for (std::size_t i = 10; i < walk.frames.size(); ++i)
     second.feed(with_id(walk.frames[i], i - 10, 1));
   second.finish();
-  const auto first_sure = static_cast<std::size_t>(config.track.lost.views_to_resume - 1);
+  const auto first_sure = static_cast<std::size_t>(config.track.relocalization.min_views - 1);
   EXPECT_EQ(second.frames()[first_sure].status, core::FrameStatus::kResumed);
   ASSERT_GT(second.map().keyframes.size(), first.map().keyframes.size());
   EXPECT_EQ(second.map().keyframes.back().view.frame.session(), 1);
@@ -180,7 +180,8 @@ TEST(Relocalisation, NobodyIsFoundWhereHeCannotHaveGot) {
   const double way_m = (walk.truth.front().world_from_camera.translation -
                         walk.truth.back().world_from_camera.translation)
                            .norm();
-  ASSERT_GT(way_m, 0.5 + config.track.lost.max_speed_m_s * 5.0 / 15.0) << "or he may be back";
+  ASSERT_GT(way_m, 0.5 + config.track.relocalization.max_speed_m_s * 5.0 / 15.0)
+      << "or he may be back";
   for (std::size_t i = num_before; i < index; ++i)
     EXPECT_FALSE(slam.frames()[i].is_measured) << "frame " << i;
 }
@@ -259,7 +260,7 @@ TEST_F(Abducted, AMapThatHasHardlyBegunIsGivenUpForANewOne) {
 }
 
 TEST_F(Abducted, AMapThatIsToBeKeptIsKept) {
-  config_.track.start.provisional_keyframes = 0;
+  config_.track.initialization.provisional_keyframes = 0;
   Slam slam(config_, DepthFrom::kMotion);
   walk_on(slam);
   EXPECT_GE(num_before(slam), 10);

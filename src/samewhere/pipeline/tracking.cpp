@@ -36,12 +36,13 @@ Tracking::Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapp
       lost_tracker_({config.track, features_of_lost(config, depth_from == DepthFrom::kMotion),
                      config.optimize, static_cast<std::uint64_t>(config.seed)}),
       place_finder_(config_, lost_tracker_),
+      passing_(config.track.free_space),
       scale_watch_(config.track.max_scale_change),
       mapping_(mapping) {
   frames_.reserve(kReservedFrames);
   if (depth_from == DepthFrom::kMotion) {
-    starter_.emplace(track::StartSettings{config.track.start, config.track.drift, config.features,
-                                          config.optimize,
+    starter_.emplace(track::StartSettings{config.track.initialization, config.track.drift,
+                                          config.features, config.optimize,
                                           static_cast<std::uint64_t>(config.seed)});
   }
 }
@@ -140,15 +141,16 @@ std::optional<scene::TrackedView> Tracking::locate_in_map(const core::Frame& fra
 std::optional<scene::TrackedView> Tracking::held_by_depth(const core::Frame& frame,
                                                           const features::View& view) {
   constexpr double kAll = 1.0;
-  const bool is_asked = config_.track.min_share_by_depth <= kAll;
+  const bool is_asked = config_.track.depth_alignment.min_agreement <= kAll;
   if (!is_asked || !frame.depth_m || !last_depth_m_ || local_map_.size() == 0) return std::nullopt;
   const core::ScopedTimer timer(timings_, "depth alignment");
   const core::Camera& camera = view.rig->cameras[0];
   const core::Rigid3& body_from_camera = view.rig->body_from_camera[0];
   const core::Rigid3 camera_from_body = inverse(body_from_camera);
-  const auto aligned = track::align({*last_depth_m_, camera}, {*frame.depth_m, camera},
-                                    camera_from_body * last_from_next_ * body_from_camera,
-                                    config_.track.min_share_by_depth);
+  const track::DepthAlignmentConfig& config = config_.track.depth_alignment;
+  const auto aligned = track::align({*last_depth_m_, camera, config.max_step_ratio},
+                                    {*frame.depth_m, camera, config.max_step_ratio},
+                                    camera_from_body * last_from_next_ * body_from_camera, config);
   if (!aligned) return std::nullopt;
   const core::Rigid3 reference_from_last =
       inverse(world_from_body(map_, local_map_.reference)) * world_from(last_->pose);
@@ -202,7 +204,8 @@ bool Tracking::is_within_reach(const core::FramePose& pose) const {
   const core::FramePose* last = last_measured();
   if (last == nullptr || is_without_depth(map_)) return true;
   const double way_m = (world_from(pose).translation - world_from(*last).translation).norm();
-  return way_m <= kAnyhow_m + config_.track.lost.max_speed_m_s * (pose.stamp_s - last->stamp_s);
+  return way_m <=
+         kAnyhow_m + config_.track.relocalization.max_speed_m_s * (pose.stamp_s - last->stamp_s);
 }
 
 Proof Tracking::proof_to_resume(double stamp_s) const {
@@ -210,7 +213,8 @@ Proof Tracking::proof_to_resume(double stamp_s) const {
   const core::FramePose* last = last_measured();
   const bool is_moment = last != nullptr && stamp_s - last->stamp_s <= kMoment_s;
   // without depth nothing is beyond reach: a weak pose may be anywhere
-  return {is_moment ? 1 : config_.track.lost.views_to_resume, is_moment && !is_without_depth(map_)};
+  return {is_moment ? 1 : config_.track.relocalization.min_views,
+          is_moment && !is_without_depth(map_)};
 }
 
 void Tracking::follow(scene::TrackedView& tracked) {

@@ -71,7 +71,7 @@ std::optional<scene::TrackedView> Tracking::start_by_motion(const core::Frame& f
 
 bool Tracking::is_start_doubtful(double stamp_s) const {
   if (session_ != 0) return false;
-  const track::StartConfig& config = config_.track.start;
+  const track::InitializationConfig& config = config_.track.initialization;
   const bool is_small =
       num_keyframes_ - num_given_up_ < static_cast<std::uint64_t>(config.provisional_keyframes);
   const core::FramePose* last = last_measured();
@@ -82,7 +82,8 @@ bool Tracking::is_start_doubtful(double stamp_s) const {
 
 std::optional<scene::TrackedView> Tracking::start_anew(const core::Frame& frame,
                                                        const features::View& view) {
-  if (!starter_ && num_lost_ < config_.track.lost.frames_to_restart) return std::nullopt;
+  if (!starter_ && num_lost_ < config_.track.relocalization.reinitialize_after_frames)
+    return std::nullopt;
   if (place_finder_.has_fresh_place(proof_to_resume(view.stamp_s).num_views)) return std::nullopt;
   return start(frame, view);
 }

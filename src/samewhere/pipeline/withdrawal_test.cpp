@@ -82,8 +82,8 @@ TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoLiesPartsThem) {
   const core::LedgerRow row = accepted(core::CandidateId(9));
   const scene::LoopEdge third = loop(
       2 * kPerRoom, kPerRoom - 1, inverse(map::test_walk(5)) * map::test_walk(6), row.candidate.id);
-  EXPECT_TRUE(core::is_loop(verdict_on(believed, third, row, config_)));
-  EXPECT_EQ(core::stage_of(verdict_on(correction.map, third, row, config_)), "rival");
+  EXPECT_TRUE(core::is_loop(reverify(believed, third, row, config_)));
+  EXPECT_EQ(core::stage_of(reverify(correction.map, third, row, config_)), "competing");
 }
 
 // What was culled while the lie was believed hung on the other room.

@@ -11,7 +11,7 @@
 
 namespace samewhere::report {
 
-// A figure with its numbers: those of `values` that are any.
+// A metric with its numbers: those of `values` that are arithmetic.
 //   figure("revisits closed", "{} of {}", num_closed, num_revisits)
 template <class... T>
 Figure figure(std::string name, fmt::format_string<T...> format, T&&... values) {

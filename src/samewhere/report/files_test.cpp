@@ -56,7 +56,7 @@ TEST(FramesCsv, IsReadBackWhateverTheNames) {
   std::vector<FrameRecord> frames;
   for (std::uint64_t i = 0; i < 3; ++i) {
     frames.push_back(frame_record(static_cast<int>(i), core::Rigid3{}));
-    frames.back().name = "a,\"resumed,b\",\n.png";
+    frames.back().name = "a,\"relocalized,b\",\n.png";
   }
   frames[1].pose.status = core::FrameStatus::kResumed;
   const auto path =
@@ -66,13 +66,13 @@ TEST(FramesCsv, IsReadBackWhateverTheNames) {
   std::filesystem::remove(path);
   ASSERT_EQ(read.stamps_s.size(), 3U);
   EXPECT_EQ(read.stamps_s[2], frames[2].pose.stamp_s);
-  EXPECT_EQ(read.resumed, std::set{core::FrameId(1)});
+  EXPECT_EQ(read.relocalized, std::set{core::FrameId(1)});
 }
 
 TEST(FramesCsv, ALineThatIsNoneIsNamed) {
   const auto path =
       std::filesystem::temp_directory_path() / fmt::format("samewhere_{}_no_frames.csv", getpid());
-  for (const char* line : {"0,1.0\n", "0,soon,a.png,resumed,1,9,0,0,0,0,0,0,0,1\n"}) {
+  for (const char* line : {"0,1.0\n", "0,soon,a.png,relocalized,1,9,0,0,0,0,0,0,0,1\n"}) {
     core::write_file(path, std::string("index,stamp_s\n") + line);
     EXPECT_THAT([&] { read_frames_csv(path); },
                 testing::ThrowsMessage<core::InputError>(testing::HasSubstr(

@@ -27,7 +27,7 @@ std::string pose_fields(const std::optional<core::Rigid3>& world_from_camera) {
                      q.y(), q.z(), q.w());
 }
 
-// Told from the end, for the name before it may hold commas. Throws if there are too few fields.
+// Columns are counted from the end, since the name may hold commas. Throws if there are too few.
 std::string_view status_of(std::string_view record) {
   constexpr auto kBehind = std::ranges::count(kColumns.substr(kColumns.find("status")), ',');
   constexpr auto kFields = std::ranges::count(kColumns, ',') + 1;
@@ -76,7 +76,7 @@ FrameTimes read_frames_csv(const std::filesystem::path& path) {
     const core::FrameId frame(frames.stamps_s.size());
     try {
       if (status_of(record) == core::name_of(core::FrameStatus::kResumed))
-        frames.resumed.insert(frame);
+        frames.relocalized.insert(frame);
       frames.stamps_s.push_back(std::stod(std::string(record.substr(record.find(',') + 1))));
     } catch (const std::exception&) {
       throw core::InputError(fmt::format("{}, line {}: expected {}", path.string(),

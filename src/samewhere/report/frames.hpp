@@ -18,10 +18,10 @@ core::Trajectory measured_trajectory(const std::vector<FrameRecord>& frames);
 // reference keyframe, and world_from_camera (metres, quaternion; empty if not measured). RFC 4180.
 std::string frames_csv(const std::vector<FrameRecord>& frames);
 
-// What such a file says of all frames.
+// What frames.csv holds of all frames.
 struct FrameTimes {
-  std::vector<double> stamps_s;     // by position
-  std::set<core::FrameId> resumed;  // where somebody who was lost was found again
+  std::vector<double> stamps_s;         // by position
+  std::set<core::FrameId> relocalized;  // frames at which tracking was relocalized
 };
 
 // Throws InputError, naming file and line, if it cannot be read or a line is not of such a file.

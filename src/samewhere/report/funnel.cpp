@@ -21,11 +21,11 @@ std::vector<const core::LedgerRow*> final_rows(const core::Ledger& ledger) {
 
 Funnel funnel(const core::Ledger& ledger) {
   Funnel result;
-  std::map<core::Refusal, int> num_refused;
+  std::map<core::Refusal, int> num_rejected;
   for (const core::LedgerRow* row : final_rows(ledger)) {
     ++result.num_candidates;
     if (const auto* rejection = std::get_if<core::Rejection>(&row->verdict))
-      ++num_refused[rejection->stage];
+      ++num_rejected[rejection->stage];
     else if (core::is_loop(row->verdict))
       ++result.num_accepted;
     else
@@ -33,49 +33,49 @@ Funnel funnel(const core::Ledger& ledger) {
   }
   int num_arrived = result.num_candidates;
   for (const core::Refusal stage : core::kAllRefusals) {
-    result.rows.push_back({stage, num_arrived, num_refused[stage]});
-    num_arrived -= num_refused[stage];
+    result.rows.push_back({stage, num_arrived, num_rejected[stage]});
+    num_arrived -= num_rejected[stage];
   }
   return result;
 }
 
-std::string_view question_of(core::Refusal refusal) {
-  switch (refusal) {
+std::string_view question_of(core::Refusal check) {
+  switch (check) {
     case core::Refusal::kSimilarity:
-      return "do the two views look alike?";
+      return "are the image descriptors similar enough?";
     case core::Refusal::kPause:
-      return "is it not just after another loop?";
+      return "is the last accepted loop long enough ago?";
     case core::Refusal::kMatches:
       return "do enough features match?";
     case core::Refusal::kInliers:
-      return "do enough matches agree on one geometry?";
+      return "are enough matches inliers of one geometry?";
     case core::Refusal::kSpread:
-      return "are they spread over the image?";
+      return "are the inliers spread over the image?";
     case core::Refusal::kPose:
-      return "do they give a relative pose, where one is needed?";
-    case core::Refusal::kAgreement:
-      return "do both views find the same relative pose?";
+      return "is a relative pose estimated, where one is required?";
+    case core::Refusal::kConsistency:
+      return "do the relative poses from both views' depth agree?";
     case core::Refusal::kOdometry:
-      return "does it fit the path travelled?";
-    case core::Refusal::kRival:
-      return "has no loop put the query elsewhere already?";
+      return "is the correction within the accumulated drift?";
+    case core::Refusal::kCompeting:
+      return "does no other place explain the query?";
     case core::Refusal::kSequence:
-      return "do the views around it go on to match, where nothing else can tell?";
+      return "do neighbouring views match too, where nothing else decides?";
     case core::Refusal::kGraph:
-      return "does it fit the loops before it?";
+      return "is it consistent with the loops before it?";
     case core::Refusal::kWithdrawn:
-      return "does it fit the loops after it?";
+      return "is it consistent with the loops after it?";
   }
-  throw core::ContractError("promise broken: every Refusal has a question");
+  throw core::ContractError("promise broken: every check has a question");
 }
 
 std::string funnel_text(const Funnel& funnel) {
   std::string text;
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "  {:<12}{:>9}{:>9}\n", "check", "arrived", "refused");
+  fmt::format_to(out, "  {:<12}{:>9}{:>9}\n", "check", "arrived", "rejected");
   for (const FunnelRow& row : funnel.rows)
     fmt::format_to(out, "  {:<12}{:>9}{:>9}   {}\n", core::name_of(row.stage), row.num_arrived,
-                   row.num_refused, question_of(row.stage));
+                   row.num_rejected, question_of(row.stage));
   fmt::format_to(out, "  {:<12}{:>9}\n", "ambiguous", funnel.num_ambiguous);
   fmt::format_to(out, "  {:<12}{:>9}\n", "accepted", funnel.num_accepted);
   return text;

@@ -15,24 +15,24 @@ std::vector<const core::LedgerRow*> final_rows(const core::Ledger& ledger);
 struct FunnelRow {
   core::Refusal stage = core::Refusal::kSimilarity;
   int num_arrived = 0;
-  int num_refused = 0;
+  int num_rejected = 0;
 };
 
-// Where candidates were refused: one row per check, in the order of the checks.
+// Candidates rejected by each check: one row per check, in the order of the checks.
 struct Funnel {
   std::vector<FunnelRow> rows;
   int num_candidates = 0;
   int num_accepted = 0;
-  int num_ambiguous = 0;  // passed the checks, but something else explains the view as well
+  int num_ambiguous = 0;  // passed the checks, but a competing hypothesis remains
 };
 
 // Of the final verdicts.
 Funnel funnel(const core::Ledger& ledger);
 
-// What a check asks, for a person: "do enough matches agree on one geometry?".
-std::string_view question_of(core::Refusal refusal);
+// The check as a question for the user: "do enough features match?".
+std::string_view question_of(core::Refusal check);
 
-// The funnel as an aligned table for the terminal, ends with a line break.
+// The funnel as an aligned table for the terminal; ends with a line break.
 std::string funnel_text(const Funnel& funnel);
 
 }  // namespace samewhere::report

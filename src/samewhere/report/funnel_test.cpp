@@ -12,26 +12,26 @@
 namespace samewhere::report {
 namespace {
 
-TEST(Funnel, CountsWhoArrivesAndWhoIsRefusedAtEachCheck) {
+TEST(Funnel, CountsArrivedAndRejectedCandidatesOfEachCheck) {
   const Funnel found = funnel(sample_ledger());
   EXPECT_EQ(found.num_candidates, 35);
   EXPECT_EQ(found.num_accepted, 3);
   EXPECT_EQ(found.num_ambiguous, 1);
   ASSERT_EQ(found.rows.size(), std::size(core::kAllRefusals));
   const std::vector<int> arrived = {35, 15, 15, 9, 5, 5, 5, 5, 4, 4, 4, 4};
-  const std::vector<int> refused = {20, 0, 6, 4, 0, 0, 0, 1, 0, 0, 0, 0};
+  const std::vector<int> rejected = {20, 0, 6, 4, 0, 0, 0, 1, 0, 0, 0, 0};
   ASSERT_EQ(arrived.size(), found.rows.size());
   for (std::size_t i = 0; i < found.rows.size(); ++i) {
     EXPECT_EQ(found.rows[i].stage, core::kAllRefusals[i]);
     EXPECT_EQ(found.rows[i].num_arrived, arrived[i]);
-    EXPECT_EQ(found.rows[i].num_refused, refused[i]);
+    EXPECT_EQ(found.rows[i].num_rejected, rejected[i]);
   }
 }
 
-TEST(Funnel, LosesNobody) {
+TEST(Funnel, LosesNoCandidate) {
   const Funnel found = funnel(sample_ledger());
   const FunnelRow& last = found.rows.back();
-  EXPECT_EQ(last.num_arrived - last.num_refused, found.num_accepted + found.num_ambiguous);
+  EXPECT_EQ(last.num_arrived - last.num_rejected, found.num_accepted + found.num_ambiguous);
 }
 
 TEST(Funnel, OnlyTheLastVerdictOnACandidateCounts) {
@@ -70,7 +70,7 @@ TEST(FunnelText, HasEveryCheckAndBothOutcomesInLine) {
   }
   EXPECT_EQ(names,
             (std::vector<std::string>{"check", "similarity", "pause", "matches", "inliers",
-                                      "spread", "pose", "agreement", "odometry", "rival",
+                                      "spread", "pose", "consistency", "odometry", "competing",
                                       "sequence", "graph", "withdrawn", "ambiguous", "accepted"}));
   EXPECT_TRUE(text.ends_with("\n"));
 }

@@ -82,10 +82,10 @@ std::string graph_plan_svg(const GraphRecord& record) {
   const PlanView view = record.is_planar ? PlanView{} : plan_view_of(record.after);
   const std::vector<Eigen::Vector2d> before = on_page(record.before, view);
   const std::vector<Eigen::Vector2d> after = on_page(record.after, view);
-  const Layer layers[] = {{"path as it was given", "#c8c8c8", 1.0, &before, &record.path},
-                          {"loops believed", "#7fbf9f", 0.6, &after, &record.believed},
-                          {"loops refused", "#d62728", 0.8, &after, &record.refused},
-                          {"path", "#1f4e9c", 1.4, &after, &record.path}};
+  const Layer layers[] = {{"initial path", "#c8c8c8", 1.0, &before, &record.path},
+                          {"accepted loops", "#7fbf9f", 0.6, &after, &record.accepted},
+                          {"rejected loops", "#d62728", 0.8, &after, &record.rejected},
+                          {"optimized path", "#1f4e9c", 1.4, &after, &record.path}};
   const Page page(after);
   const double top_px = kLegend_px * (std::size(layers) + 1) + kBorder_px;
   const double height_px = page.height_px() + top_px;

@@ -15,7 +15,7 @@ namespace samewhere::report {
 namespace {
 
 constexpr std::size_t kMaxAcceptedPairs = 300;
-constexpr std::size_t kMaxRefusedPairs = 12;
+constexpr std::size_t kMaxRejectedPairs = 12;
 
 std::string counted(int count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
@@ -32,13 +32,12 @@ std::string lead(const RunRecord& record, const Funnel& funnel) {
                        counted(static_cast<int>(record.frames.size()), "frame", "frames"),
                        num_measured);
   }
-  if (funnel.num_candidates == 0) return text + "No two views looked alike enough to be judged.";
-  const int num_refused = funnel.num_candidates - funnel.num_accepted - funnel.num_ambiguous;
-  text += fmt::format("{} judged: {} accepted as the same place, {} refused",
-                      counted(funnel.num_candidates, "pair of views that look alike was",
-                              "pairs of views that look alike were"),
-                      funnel.num_accepted, num_refused);
-  if (funnel.num_ambiguous > 0) text += fmt::format(", {} left undecided", funnel.num_ambiguous);
+  if (funnel.num_candidates == 0) return text + "No loop candidates.";
+  const int num_rejected = funnel.num_candidates - funnel.num_accepted - funnel.num_ambiguous;
+  text += fmt::format("{}: {} accepted, {} rejected",
+                      counted(funnel.num_candidates, "loop candidate", "loop candidates"),
+                      funnel.num_accepted, num_rejected);
+  if (funnel.num_ambiguous > 0) text += fmt::format(", {} ambiguous", funnel.num_ambiguous);
   return text + ".";
 }
 
@@ -47,9 +46,11 @@ std::string header(const RunRecord& record, const Funnel& funnel) {
       fmt::format("<header><h1>{}</h1><p class=\"source\">{}</p><p class=\"lead\">{}</p>",
                   escaped(record.title), escaped(record.source), lead(record, funnel));
   if (record.is_interrupted)
-    html += "<p class=\"warning\">This run was interrupted: the page shows it up to there.</p>";
+    html +=
+        "<p class=\"warning\">The run was interrupted; the report covers the frames up to "
+        "there.</p>";
   if (record.input_error)
-    html += fmt::format("<p class=\"warning\">The recording broke and the run ended there: {}</p>",
+    html += fmt::format("<p class=\"warning\">The input failed and the run ended there: {}</p>",
                         escaped(*record.input_error));
   if (!record.figures.empty()) {
     html += "<dl class=\"figures\">";
@@ -88,42 +89,39 @@ std::string funnel_bars(const Funnel& funnel) {
     std::string question(question_of(row.stage));
     question[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(question[0])));
     html += funnel_line(question, core::name_of(row.stage),
-                        bar("passed", row.num_arrived - row.num_refused, funnel.num_candidates) +
-                            bar("refused", row.num_refused, funnel.num_candidates),
-                        fmt::format("<b>{}</b> of {} refused", row.num_refused, row.num_arrived));
+                        bar("passed", row.num_arrived - row.num_rejected, funnel.num_candidates) +
+                            bar("rejected", row.num_rejected, funnel.num_candidates),
+                        fmt::format("<b>{}</b> of {} rejected", row.num_rejected, row.num_arrived));
   }
-  html += funnel_line("Undecided", "something else explains the view as well",
+  html += funnel_line("Ambiguous", "more than one place explains the view",
                       bar("ambiguous", funnel.num_ambiguous, funnel.num_candidates),
                       fmt::format("<b>{}</b>", funnel.num_ambiguous));
-  html += funnel_line("Accepted", "the same place",
+  html += funnel_line("Accepted", "loop closures",
                       bar("accepted", funnel.num_accepted, funnel.num_candidates),
                       fmt::format("<b>{}</b>", funnel.num_accepted));
   return html + "</div>\n";
 }
 
-std::string path_sections(const RunRecord& record) {
+std::string trajectory_sections(const RunRecord& record) {
   if (record.frames.empty()) return "";
   const std::string figure = trajectory_figure(record);
-  return section("The path", figure.empty() ? "No pose was measured." : "", figure) +
-         section("Frame by frame", "", status_strip(record.frames));
+  return section("Trajectory", figure.empty() ? "No pose was measured." : "", figure) +
+         section("Tracking status", "", status_strip(record.frames));
 }
 
-std::string judgement_sections(const RunRecord& record, const Funnel& funnel) {
+std::string verification_sections(const RunRecord& record, const Funnel& funnel) {
   if (funnel.num_candidates == 0) return "";
-  std::string html = section(
-      "What was refused, and where",
-      "Each pair that looks alike passes these checks in turn; the first that fails refuses it.",
-      funnel_bars(funnel));
-  const auto refused = refused_rows(record.ledger);
-  if (!refused.empty())
-    html += section(
-        "Refused, most convincing first",
-        "What came closest to being taken for the same place, by inliers. The later view on the "
-        "left.",
-        pair_cards(record, refused, kMaxRefusedPairs));
+  std::string html =
+      section("Loop verification",
+              "Each candidate passes these checks in order; the first that fails rejects it.",
+              funnel_bars(funnel));
+  const auto rejected = rejected_rows(record.ledger);
+  if (!rejected.empty())
+    html += section("Rejected candidates, most inliers first", "The query is on the left.",
+                    pair_cards(record, rejected, kMaxRejectedPairs));
   const auto accepted = accepted_rows(record.ledger);
-  html += accepted.empty() ? section("Accepted pairs", "None.", "")
-                           : section("Accepted pairs", "The later view on the left.",
+  html += accepted.empty() ? section("Accepted loop closures", "None.", "")
+                           : section("Accepted loop closures", "The query is on the left.",
                                      pair_cards(record, accepted, kMaxAcceptedPairs));
   return html;
 }
@@ -138,7 +136,8 @@ std::string report_html(const RunRecord& record) {
       "<meta name=\"color-scheme\" content=\"light dark\">\n";
   html += fmt::format("<title>{}</title>\n<style>{}</style></head>\n<body><main>\n",
                       escaped(record.title), style_sheet());
-  html += header(record, found) + path_sections(record) + judgement_sections(record, found);
+  html +=
+      header(record, found) + trajectory_sections(record) + verification_sections(record, found);
   if (!record.config_yaml.empty())
     html += fmt::format("<details><summary>Configuration</summary><pre>{}</pre></details>\n",
                         escaped(record.config_yaml));

@@ -55,13 +55,13 @@ std::string without_pictures(const std::string& html) {
   return text;
 }
 
-TEST(Html, WhereTheScaleIsUnknownNoScaleBarSaysMetres) {
+TEST(Html, WithUnknownScaleThereIsNoScaleBar) {
   RunRecord record = sample_record();
   EXPECT_NE(report_html(record).find("class=\"bar\""), std::string::npos);
   record.is_scale_unknown = true;
   const std::string html = report_html(record);
   EXPECT_EQ(html.find("class=\"bar\""), std::string::npos);
-  EXPECT_NE(html.find("The scale is unknown"), std::string::npos);
+  EXPECT_NE(html.find("Scale unknown"), std::string::npos);
 }
 
 TEST(ReportHtml, IsWellNestedAndNeedsNothingFromOutside) {
@@ -75,8 +75,8 @@ TEST(ReportHtml, IsWellNestedAndNeedsNothingFromOutside) {
 TEST(ReportHtml, ShowsWhatTheRunFound) {
   const std::string html = report_html(sample_record());
   for (const char* part :
-       {"Round the corridor", "0.042 m", "312 with a measured pose", "3 accepted", "31 refused",
-        "1 left undecided", "<b>20</b> of 35 refused", "class=\"truth\"", "class=\"odometry\"",
+       {"Round the corridor", "0.042 m", "312 with a measured pose", "3 accepted", "31 rejected",
+        "1 ambiguous", "<b>20</b> of 35 rejected", "class=\"truth\"", "class=\"odometry\"",
         "a corridor that looks the same", "corridor_305.png", "min_inliers: 30"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   EXPECT_EQ(count_of(html, "<figure class=\"pair\">"), 3 + 12);
@@ -108,7 +108,7 @@ TEST(ReportHtml, EscapesEveryNameAndReason) {
 TEST(ReportHtml, OfARunThatSawNothingIsStillAPage) {
   const std::string html = report_html({});
   EXPECT_TRUE(is_well_nested(html));
-  EXPECT_NE(html.find("No two views looked alike"), std::string::npos);
+  EXPECT_NE(html.find("No loop candidates"), std::string::npos);
   EXPECT_EQ(html.find("<section>"), std::string::npos);
 }
 
@@ -198,19 +198,19 @@ TEST(StatusStrip, DrawsARectangleForEachRunOfAState) {
   EXPECT_EQ(status_strip({}), "");
 }
 
-TEST(RefusedRows, ComeMostConvincingFirst) {
+TEST(RejectedRows, ComeMostInliersFirst) {
   const core::Ledger ledger = sample_ledger();
-  const auto rows = refused_rows(ledger);
+  const auto rows = rejected_rows(ledger);
   ASSERT_EQ(rows.size(), 32u);
   EXPECT_EQ(rows[0]->candidate.query, core::FrameId(301));  // 71 inliers
-  EXPECT_EQ(rows[1]->candidate.query, core::FrameId(300));  // 44, undecided
+  EXPECT_EQ(rows[1]->candidate.query, core::FrameId(300));  // 44, ambiguous
   EXPECT_EQ(rows[2]->candidate.query, core::FrameId(293));
   EXPECT_EQ(rows.back()->candidate.query, core::FrameId(270));
 }
 
-TEST(PairSvg, ShowsBothViewsWhatMatchesAndWhy) {
+TEST(PairSvg, ShowsBothViewsMatchesAndReason) {
   const RunRecord record = sample_record();
-  const core::LedgerRow& row = *refused_rows(record.ledger)[0];
+  const core::LedgerRow& row = *rejected_rows(record.ledger)[0];
   PairRecord pair{row,
                   {record.thumbnails.at(row.candidate.query), {640, 480}},
                   {record.thumbnails.at(row.candidate.match), {320, 240}},
@@ -223,7 +223,7 @@ TEST(PairSvg, ShowsBothViewsWhatMatchesAndWhy) {
       << "a line for each match";
   EXPECT_EQ(count_of(svg, "<text"), 6) << "two numbers, verdict, scores, a reason in two lines";
   EXPECT_NE(svg.find("M0.0 0.0L779.0 250.0"), std::string::npos) << "each view at its own scale";
-  EXPECT_NE(svg.find("refused: odometry"), std::string::npos);
+  EXPECT_NE(svg.find("rejected: odometry"), std::string::npos);
   EXPECT_NE(svg.find("9.8 m"), std::string::npos);
 }
 

@@ -31,7 +31,7 @@ TEST(LedgerRowJson, IsAnEntryOnOneLineThatNamesALaterSession) {
 
 TEST(LoopsJson, FollowsTheSchema) {
   const Json document = parsed(sample_ledger());
-  EXPECT_EQ(document.at("version"), 1);
+  EXPECT_EQ(document.at("version"), 2);
   ASSERT_EQ(document.at("candidates").size(), 35u);
   const std::set<std::string> keys{"query",  "match",  "verdict",         "stage",
                                    "reason", "scores", "match_from_query"};
@@ -142,7 +142,7 @@ TEST(LoopsJson, AReasonThatIsNoUtf8DoesNotCostTheFile) {
 }
 
 TEST(LoopsJson, OfNothingIsAnEmptyList) {
-  EXPECT_EQ(parsed({}), Json({{"version", 1}, {"candidates", Json::array()}}));
+  EXPECT_EQ(parsed({}), Json({{"version", 2}, {"candidates", Json::array()}}));
 }
 
 TEST(LoopsJson, IsTheSameForTheSameLedger) {

@@ -21,7 +21,7 @@ std::string name_of_frame(const RunRecord& record, core::FrameId frame) {
   return "";
 }
 
-// `called` is how a person is told of the frame.
+// `called`: the frame as it is printed.
 std::string view(const RunRecord& record, core::FrameId frame, const std::string& called) {
   std::string image;
   const auto thumbnail = record.thumbnails.find(frame);
@@ -50,7 +50,7 @@ std::string card(const RunRecord& record, const core::LedgerRow& row) {
 }
 
 // Inliers, then similarity (the least where it is no number, so that the order stays one).
-std::pair<int, double> conviction_of(const core::LedgerRow& row) {
+std::pair<int, double> strength_of(const core::LedgerRow& row) {
   const auto& geometry = core::evidence_of(row.verdict).geometry;
   const double similarity = row.candidate.similarity;
   return {geometry ? geometry->num_inliers : 0, std::isfinite(similarity) ? similarity : -1.0};
@@ -69,9 +69,9 @@ std::string scores_of(const core::Evidence& evidence) {
 }
 
 std::string verdict_in_words(const core::Verdict& verdict) {
-  if (core::is_loop(verdict)) return "same place";
-  if (std::holds_alternative<core::Ambiguous>(verdict)) return "cannot tell";
-  return fmt::format("refused: {}", core::stage_of(verdict));
+  if (core::is_loop(verdict)) return "accepted";
+  if (std::holds_alternative<core::Ambiguous>(verdict)) return "ambiguous";
+  return fmt::format("rejected: {}", core::stage_of(verdict));
 }
 
 std::vector<const core::LedgerRow*> accepted_rows(const core::Ledger& ledger) {
@@ -80,12 +80,12 @@ std::vector<const core::LedgerRow*> accepted_rows(const core::Ledger& ledger) {
   return rows;
 }
 
-std::vector<const core::LedgerRow*> refused_rows(const core::Ledger& ledger) {
+std::vector<const core::LedgerRow*> rejected_rows(const core::Ledger& ledger) {
   std::vector<const core::LedgerRow*> rows = final_rows(ledger);
   std::erase_if(rows, [](const core::LedgerRow* row) { return core::is_loop(row->verdict); });
   std::stable_sort(rows.begin(), rows.end(),
                    [](const core::LedgerRow* a, const core::LedgerRow* b) {
-                     return conviction_of(*a) > conviction_of(*b);
+                     return strength_of(*a) > strength_of(*b);
                    });
   return rows;
 }

@@ -7,13 +7,13 @@
 
 namespace samewhere::report {
 
-// Loops in the order they were found.
+// Accepted loops in the order of their candidates.
 std::vector<const core::LedgerRow*> accepted_rows(const core::Ledger& ledger);
 
-// What was not accepted, most convincing first: by inliers, then by similarity, then by id.
-std::vector<const core::LedgerRow*> refused_rows(const core::Ledger& ledger);
+// Candidates that were not accepted, most inliers first, then by similarity, then by id.
+std::vector<const core::LedgerRow*> rejected_rows(const core::Ledger& ledger);
 
-// The verdict as a person reads it ("refused: odometry"), and what was measured, in a line each.
+// One line each: the verdict ("rejected: odometry"), and what was measured.
 std::string verdict_in_words(const core::Verdict& verdict);
 std::string scores_of(const core::Evidence& evidence);
 

@@ -20,7 +20,7 @@ namespace samewhere::report {
 
 struct FrameRecord {
   core::FramePose pose;
-  std::string name;  // how the source calls it
+  std::string name;  // of the source
   // Of camera 0, after all corrections; nothing if the pose was not measured.
   std::optional<core::Rigid3> world_from_camera;
 };
@@ -30,11 +30,11 @@ struct ColouredPoint {
   std::array<std::uint8_t, 3> rgb{};
 };
 
-// One measured figure as it is shown to a person.
+// One metric as it is printed.
 struct Figure {
   std::string name;                  // "ATE RMSE"
   std::string value;                 // "0.021 m"
-  std::vector<double> numbers = {};  // in it, unrounded, in their order (figure.hpp)
+  std::vector<double> numbers = {};  // unrounded, in the order of the text (figure.hpp)
 };
 
 // A finished run, as plain data.
@@ -46,18 +46,17 @@ struct RunRecord {
   core::Trajectory odometry;          // before any correction; may be empty
   core::Trajectory truth;             // aligned into the world of the estimate; may be empty
   std::vector<ColouredPoint> points;  // of the map
-  std::map<core::FrameId, std::string>
-      thumbnails;  // JPEG (jpeg.hpp), of frames the ledger speaks of
+  std::map<core::FrameId, std::string> thumbnails;  // JPEG (jpeg.hpp), of the frames in the ledger
   std::vector<Figure> figures;
-  core::Timings timings;  // stage kWholeFrameStage is what frames per second are counted by
-  // Of the whole program, when the last frame was done; nothing where frames come at a pace of
-  // their own, or several at once.
+  core::Timings timings;  // stage kWholeFrameStage gives the frames per second
+  // CPU time of the whole program after the last frame; nothing for live sources and where several
+  // frames are processed at once.
   std::optional<double> processor_ms;
   std::string config_yaml;
-  std::optional<double> first_pose_s;  // from the program's start to the first measured pose
-  bool is_scale_unknown = false;       // one camera without depth: lengths are in map units
+  std::optional<double> first_pose_s;  // from program start to the first measured pose
+  bool is_scale_unknown = false;       // one camera without depth: poses are in map units
   bool is_interrupted = false;
-  std::optional<std::string> input_error;  // the source broke: what came after is missing
+  std::optional<std::string> input_error;  // the source failed; later frames are missing
 };
 
 // The name under which the pipeline times all work on one frame.

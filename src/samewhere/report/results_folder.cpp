@@ -43,7 +43,7 @@ ResultsFolder::ResultsFolder(ResultsPlace place) : place_(std::move(place)) {
   const fs::path& folder = place_.folder;
   if (folder.empty() || !core::is_there(folder)) return;
   if (!core::is_folder(folder))
-    throw InputError(folder.string() + ": is no folder; expected one for the results");
+    throw InputError(folder.string() + ": is no folder; expected a folder for the results");
   std::error_code not_there;
   if (fs::equivalent(folder, place_.source, not_there)) {
     throw InputError(folder.string() +
@@ -63,8 +63,8 @@ void ResultsFolder::require_usable() const {
   }
   for (const char* name : kResults) {
     if (!is_name_taken(folder / name)) continue;
-    throw InputError((folder / name).string() + ": is there already and of no earlier run (no " +
-                     kOfRun + " of one beside it); expected another folder for the results");
+    throw InputError((folder / name).string() + ": exists and is of no earlier run (no " + kOfRun +
+                     " beside it); expected another folder for the results");
   }
 }
 

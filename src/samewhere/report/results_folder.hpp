@@ -17,19 +17,19 @@ struct ResultsPlace {
   std::filesystem::path known_map = {};  // that the run starts in; it stays if it is in the folder
 };
 
-// The folder that a run writes into, for itself as long as this lives. Nothing is made, locked or
-// removed in vain: a run that has no good frame leaves everything as it was.
+// The results folder of a run, locked while this object lives. It is created at the first good
+// frame: a run without one changes nothing on the disk.
 class ResultsFolder {
  public:
-  // Throws InputError if the folder asked for cannot take the results: it is the recording's, holds
-  // those of an earlier run that are not to be replaced, holds files with the names of results that
-  // are of no run (another's recording or map), or another program is writing into it.
+  // Throws InputError if the folder cannot take the results: it is the recording, holds results of
+  // an earlier run that are not to be replaced, holds files with the names of results that are of
+  // no run (a recording or a map), or another program is writing into it.
   explicit ResultsFolder(ResultsPlace place);
 
-  // At the first good frame: makes the folder (of two runs of one name at once each gets its own),
-  // and removes what an earlier run left there, with what `samewhere dense` made of it, and what
-  // killed ones did. Other files stay. Says so in the log. Throws InputError, also if another
-  // program is writing to a map in it.
+  // At the first good frame: creates the folder (two simultaneous runs of one name get one each)
+  // and removes the results of an earlier run, those of `samewhere dense`, and partial files. Other
+  // files stay. Logs what it removed. Throws InputError, also if another program is writing to a
+  // map in it.
   void begin();
 
   bool has_begun() const { return has_begun_; }

@@ -33,7 +33,7 @@ std::string status_strip(const std::vector<FrameRecord>& frames) {
   for (const FrameRecord& frame : frames) ++num_frames[frame.pose.status];
   std::string html = fmt::format(
       "<div class=\"strip\"><svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" "
-      "aria-label=\"state of each frame\">{}</svg>",
+      "aria-label=\"tracking status of each frame\">{}</svg>",
       frames.size(), rectangles(frames));
   html += "<ul class=\"legend states\">";
   for (const auto& [status, count] : num_frames)

@@ -7,7 +7,7 @@
 
 namespace samewhere::report {
 
-// HTML: a timeline of the frames coloured by tracking state, and how many frames were in each.
+// HTML: a timeline of the frames coloured by tracking status, and the number of frames of each.
 // Empty without frames.
 std::string status_strip(const std::vector<FrameRecord>& frames);
 

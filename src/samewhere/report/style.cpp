@@ -98,7 +98,7 @@ svg text {
 .funnel small { display: block; color: var(--soft); font-size: 0.82rem; }
 .funnel .track-bar { display: flex; height: 14px; border-radius: 4px; }
 .funnel .passed { background: var(--bar); border-radius: 4px 0 0 4px; }
-.funnel .refused { background: var(--no); border-radius: 0 4px 4px 0; opacity: 0.85; }
+.funnel .rejected { background: var(--no); border-radius: 0 4px 4px 0; opacity: 0.85; }
 .funnel .accepted { background: var(--yes); border-radius: 4px; }
 .funnel .ambiguous { background: var(--maybe); border-radius: 4px; }
 .funnel .count { color: var(--soft); font-size: 0.9rem; text-align: right; }

@@ -112,10 +112,10 @@ inline core::Ledger sample_ledger() {
   const core::Candidate waiting = candidate(id++, 300, 2, 0.81);
   ledger.push_back(
       refused_row(waiting, core::Refusal::kSpread, evidence(0.81, 120, 44), "too narrow"));
-  ledger.push_back(refused_row(candidate(id++, 301, 25, 0.84), core::Refusal::kOdometry,
-                               evidence(0.84, 140, 71),
-                               "the loop would move the query by 9.8 m, the path travelled allows "
-                               "1.2 m: a corridor that looks the same"));
+  ledger.push_back(
+      refused_row(candidate(id++, 301, 25, 0.84), core::Refusal::kOdometry, evidence(0.84, 140, 71),
+                  "the loop would move the query by 9.8 m, the accumulated drift allows "
+                  "1.2 m: a corridor that looks the same"));
   for (int i = 0; i < 3; ++i, ++id)
     ledger.push_back(loop_row(candidate(id, 305 + i, 24 + i, 0.9), 80 + i));
   ledger.push_back(ambiguous_row(waiting));

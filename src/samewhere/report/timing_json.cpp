@@ -65,7 +65,7 @@ std::string timing_json(const core::Timings& timings, double peak_memory_mib) {
 }
 
 Table stage_table(const std::string& json, const std::string& name) {
-  Table table{{"stage", "times", "median ms", "p95 ms", "p99 ms", "processor ms a frame"}, {}};
+  Table table{{"stage", "calls", "median ms", "p95 ms", "p99 ms", "CPU time, ms / frame"}, {}};
   try {
     // sorted: a key is found at once, however many there are
     const auto document = nlohmann::json::parse(json);

@@ -114,7 +114,7 @@ std::string drawn_loops(const RunRecord& record, const Page& page) {
       continue;
     fmt::format_to(
         std::back_inserter(svg),
-        "<g class=\"loop\"><title>frame {} is where frame {} was</title>"
+        "<g class=\"loop\"><title>loop closure: frame {} with frame {}</title>"
         "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>"
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>"
         "</g>\n",
@@ -163,11 +163,11 @@ std::string scale_bar(const Page& page) {
 }
 
 std::string legend(const RunRecord& record, bool has_loops) {
-  std::string html = "<ul class=\"legend\"><li class=\"path\"><i></i>final path</li>";
+  std::string html = "<ul class=\"legend\"><li class=\"path\"><i></i>estimated trajectory</li>";
   if (!record.odometry.empty())
-    html += "<li class=\"odometry\"><i></i>odometry, before correction</li>";
-  if (!record.truth.empty()) html += "<li class=\"truth\"><i></i>truth</li>";
-  if (has_loops) html += "<li class=\"loop\"><i></i>accepted loop</li>";
+    html += "<li class=\"odometry\"><i></i>odometry, without loop closures</li>";
+  if (!record.truth.empty()) html += "<li class=\"truth\"><i></i>ground truth</li>";
+  if (has_loops) html += "<li class=\"loop\"><i></i>accepted loop closure</li>";
   return html + "</ul>";
 }
 
@@ -187,19 +187,17 @@ std::string trajectory_figure(const RunRecord& record) {
   const std::string loops = drawn_loops(record, page);
   return fmt::format(
              "<figure><div class=\"plot\"><svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
-             "aria-label=\"the path of the camera\">\n",
+             "aria-label=\"trajectory of the camera\">\n",
              kFigureWidth_px, page.height_px()) +
          drawn(odometry, "odometry", page) + drawn(path, "path", page) +
          drawn(truth, "truth", page) + loops + start_and_end(path, page) +
          (record.is_scale_unknown ? "" : scale_bar(page)) + "</svg></div>" +
          legend(record, !loops.empty()) +
          (view.is_from_above
-              ? "<p class=\"note\">Seen from above.</p>"
-              : "<p class=\"note\">Seen so that the two directions of most motion lie on the "
-                "page.</p>") +
+              ? "<p class=\"note\">View from above.</p>"
+              : "<p class=\"note\">Projected onto the two directions of largest motion.</p>") +
          (record.is_scale_unknown
-              ? "<p class=\"note\">The scale is unknown: one camera without depth measures "
-                "directions, not lengths.</p>"
+              ? "<p class=\"note\">Scale unknown: one camera without depth does not observe it.</p>"
               : "") +
          "</figure>\n";
 }

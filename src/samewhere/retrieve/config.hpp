@@ -18,9 +18,9 @@ struct Config {
   int window_frames = -1;
   int place_frames = 0;
   int shortlist = 30;
-  int views_of_place = 1;
-  int lost_candidates = 8;
-  int lost_place_frames = 30;
+  int views_per_place = 1;
+  int relocalization_candidates = 8;
+  int relocalization_place_frames = 30;
 
   // sampled search and every_queue only, section 3.1.4 of the published method
   int num_draws = 50;           // L
@@ -32,57 +32,51 @@ struct Config {
 
 inline void visit_sampling(Config& config, core::FieldVisitor& visit) {
   visit("num_draws", config.num_draws,
-        {.help = "sampled search: L, queues drawn per query", .min = 1, .max = 1000000});
-  visit("min_similarity", config.min_similarity,
-        {.help = "sampled, every_queue: cosine that a view must exceed, eq. (7)",
-         .min = -1.0,
-         .max = 1.0});
+        {.help = "sampled: draws per query, L of the published method", .min = 1, .max = 1000000});
+  visit(
+      "min_similarity", config.min_similarity,
+      {.help = "sampled, every_queue: least cosine similarity, eq. (7)", .min = -1.0, .max = 1.0});
   visit("per_draw", config.per_draw,
-        {.help = "sampled, every_queue: kept of a queue: its three best (Table 1), or the nearest "
-                 "by eq. (5)-(6)",
+        {.help = "sampled, every_queue: views kept of a queue: the best three (Table 1) or the "
+                 "nearest, eq. (5)-(6)",
          .choices = {"top3", "nearest"}});
   visit(
       "group_size", config.group_size,
-      {.help = "views in a group of the store; a multiple of queue_size", .min = 1, .max = 100000});
+      {.help = "views per group of the store; a multiple of queue_size", .min = 1, .max = 100000});
   visit("queue_size", config.queue_size,
-        {.help = "consecutive views in a queue of the store", .min = 1, .max = 100000});
+        {.help = "consecutive views per queue of the store", .min = 1, .max = 100000});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("search", config.search,
-        {.help = "compare every stored view, or a random sample of them (the published method), or "
-                 "what the sample tends to with ever more draws",
+        {.help = "exact: all views; sampled: random queues (published method); every_queue: the "
+                 "limit of sampled for many draws",
          .choices = {"exact", "sampled", "every_queue"}});
   visit("num_candidates", config.num_candidates,
-        {.help = "views handed to verification, the best ones", .min = 1, .max = 1000});
+        {.help = "candidates per view, the most similar ones", .min = 1, .max = 1000});
   visit("word_candidates", config.word_candidates,
-        {.help = "and so many more, those that show most of the same features; 0: features are not "
-                 "asked",
-         .min = 0,
-         .max = 1000});
+        {.help = "further candidates, by visual words; 0: none", .min = 0, .max = 1000});
   visit("vocabulary", config.vocabulary,
-        {.help = "word_candidates: file of `samewhere train words`; a name alone: of models/, "
-                 "or else of the working directory"});
+        {.help = "word_candidates: file of `samewhere train words`; a bare name: in models/, else "
+                 "in the working directory"});
   visit("window_s", config.window_s,
-        {.help = "a view this old or younger is no candidate, by the source's frame rate",
-         .min = 0.0,
-         .max = 1e6});
+        {.help = "views of the last so many seconds are no candidates", .min = 0.0, .max = 1e6});
   visit("window_frames", config.window_frames,
-        {.help = "the same in frames, instead of window_s; -1: window_s counts", .min = -1});
+        {.help = "the same in frames, replaces window_s; -1: window_s applies", .min = -1});
   visit("place_frames", config.place_frames,
-        {.help = "of views closer than this many frames only the best is a candidate; 0: all are",
+        {.help = "of the views within so many frames only the most similar is a candidate; 0: off",
          .min = 0});
   visit("shortlist", config.shortlist,
-        {.help = "with a map, so many views are grouped into places by what they share of it, and "
-                 "num_candidates of them are views of different places; 0: not grouped",
+        {.help = "with a map: so many similar views are grouped into places by covisibility, and "
+                 "the candidates are of different places; 0: off",
          .min = 0,
          .max = 10000});
-  visit("views_of_place", config.views_of_place,
-        {.help = "shortlist: so many candidates of one place at most", .min = 1, .max = 1000});
-  visit("lost_candidates", config.lost_candidates,
-        {.help = "num_candidates for a view that is lost", .min = 1, .max = 1000});
-  visit("lost_place_frames", config.lost_place_frames,
-        {.help = "place_frames for a view that is lost", .min = 0});
+  visit("views_per_place", config.views_per_place,
+        {.help = "shortlist: largest number of candidates of one place", .min = 1, .max = 1000});
+  visit("relocalization_candidates", config.relocalization_candidates,
+        {.help = "num_candidates in relocalization", .min = 1, .max = 1000});
+  visit("relocalization_place_frames", config.relocalization_place_frames,
+        {.help = "place_frames in relocalization", .min = 0});
   visit_sampling(config, visit);
 }
 

@@ -70,8 +70,8 @@ std::vector<FoundView> Retriever::search_places(const core::Descriptor& descript
                                                 const cv::Mat& features) const {
   check(descriptor);
   Config lost = config_;
-  lost.num_candidates = lost.word_candidates = config_.lost_candidates;
-  lost.place_frames = config_.lost_place_frames;
+  lost.num_candidates = lost.word_candidates = config_.relocalization_candidates;
+  lost.place_frames = config_.relocalization_place_frames;
   constexpr int kNoWindow = 0;
   const int num_allowed = store_.num_older(descriptor.frame, kNoWindow);
   return found_by(descriptor, features, num_allowed, lost);
@@ -94,7 +94,7 @@ std::vector<FoundView> Retriever::found_by(const core::Descriptor& descriptor,
     });
     if (is_known) continue;
     found.push_back(view_at(one.position));
-    found.back().is_by_features = true;
+    found.back().origin = core::Origin::kVisualWords;
   }
   return found;
 }
@@ -136,7 +136,7 @@ std::vector<core::Candidate> compare(const core::Descriptor& query,
     candidates.push_back({.query = query.frame,
                           .match = view.frame,
                           .similarity = core::ncc(query.unit, view.unit),
-                          .is_by_features = view.is_by_features});
+                          .origin = view.origin});
   }
   std::sort(
       candidates.begin(), candidates.end(), [](const core::Candidate& a, const core::Candidate& b) {

@@ -13,47 +13,46 @@
 
 namespace samewhere::retrieve {
 
-// A stored view that the search found, with what the exact similarity needs of it: a value that
-// does not care what happens to the store meanwhile.
+// A stored view that the search found, with the data for the exact similarity: a value, independent
+// of later changes of the store.
 struct FoundView {
   core::FrameId frame;
   std::vector<float> unit;
-  bool is_by_features = false;  // not by its looks
+  core::Origin origin = core::Origin::kRetrieved;  // or kVisualWords
 };
 
-// The exact similarity of what the search found: candidates with their NCC, eq. (8)-(13), most
-// similar first, of equals the older first; ids are left invalid, the ledger gives them. Throws
-// ContractError if the vectors differ in length.
+// Exact similarity of the views found: candidates with their NCC, eq. (8)-(13), most similar first,
+// of equals the older first; ids are left invalid, the ledger assigns them. Throws ContractError if
+// the vectors differ in length.
 std::vector<core::Candidate> compare(const core::Descriptor& query,
                                      const std::vector<FoundView>& found);
 
-// Which earlier views look like this one? By appearance alone.
+// Place recognition by appearance: retrieves similar earlier views.
 class Retriever {
  public:
-  // config.window_frames says the window: whoever knows the frame rate has resolved window_s into
-  // it. Throws InputError on settings that do not fit each other.
+  // config.window_frames is the window: the caller has converted window_s by the frame rate. Throws
+  // InputError on settings that do not fit each other.
   Retriever(const Config& config, std::uint64_t seed);
 
-  // Remembers a view, by what it looks like as a whole and by its ORB descriptors, a row each
-  // (none: no feature of it is ever found). Frames ascend strictly. Throws ContractError on any
-  // other order, and on a descriptor of another describer or length, or one that is neither of unit
-  // length nor zero.
+  // Adds a view with its image descriptor and its ORB descriptors, one per row (none: the view is
+  // never found by visual words). Frames ascend strictly. Throws ContractError on any other order,
+  // and on a descriptor of another describer or length, or one that is neither of unit length nor
+  // zero.
   void add(const core::Descriptor& descriptor, const cv::Mat& features = {});
 
-  // At most config.num_candidates views that look alike as a whole, and behind them at most
-  // config.word_candidates others that show most of the same features, none of them
-  // config.window_frames old or younger. Exact
-  // search knows no threshold: what is alike enough, verification decides. The others may find
-  // nothing; the draws depend on seed and query frame only. The query need not have been added.
-  // Throws ContractError as add().
+  // At most config.num_candidates views by image descriptor, and behind them at most
+  // config.word_candidates others by visual words, none within the window. Exact search has no
+  // threshold; verification decides. The other searches may find nothing; their draws depend on
+  // seed and query frame only. The query need not have been added. Throws ContractError as add().
   std::vector<FoundView> search(const core::Descriptor& descriptor,
                                 const cv::Mat& features = {}) const;
-  // For who is lost: he may be where he was a moment ago, and wants to know places that look alike
-  // rather than one place many times: no window, lost_candidates of either kind, lost_place_frames.
+  // For relocalization: no window, since the camera may be where it was a moment ago;
+  // relocalization_candidates of either kind, of different places by
+  // relocalization_place_frames.
   std::vector<FoundView> search_places(const core::Descriptor& descriptor,
                                        const cv::Mat& features = {}) const;
-  // For a map that knows which views show one place: so many more of either kind that search() asks
-  // for, config.shortlist at most.
+  // For a map that groups views by common landmarks: so many more of either kind that search()
+  // retrieves, config.shortlist at most.
   std::vector<FoundView> shortlist(const core::Descriptor& descriptor,
                                    const cv::Mat& features = {}) const;
 

@@ -12,12 +12,12 @@
 
 namespace samewhere::retrieve {
 
-// Which stored views show the same features? An inverted file with Hamming embedding (Jegou, Douze
+// Retrieval by visual words. An inverted file with Hamming embedding (Jegou, Douze
 // and Schmid, ECCV 2008): a feature of the query votes for each view that has one of the same word
 // whose signature is near, the more the nearer, and the rarer the word is.
 //
-// How rare is learned along the way, beginning with the pictures that the vocabulary was grown of:
-// what every place shows hardly counts. 12 bytes a feature.
+// Word frequencies are updated along the way, starting from those of the training images of the
+// vocabulary: words that most places show have little weight. 12 bytes per feature.
 class WordIndex {
  public:
   // Throws ContractError without a vocabulary.

@@ -121,7 +121,7 @@ class ViewReader {
   [[noreturn]] void complain_about_length(const Poses& poses) const {
     throw core::InputError(
         fmt::format("{}: ended before frame {}, which frames.csv of the run "
-                    "names: the source is another one than when it was run",
+                    "names: the source has changed since the run",
                     config_.source, poses.rbegin()->first));
   }
 
@@ -142,7 +142,7 @@ class ViewReader {
   std::size_t num_views_ = 0;
 };
 
-// What all keyframes saw.
+// Fused depth of all keyframes.
 struct Fused {
   explicit Fused(const dense::Config& config) : cloud(config), octree(config), scans(config) {}
 
@@ -178,12 +178,12 @@ std::unique_ptr<Fused> fuse(const pipeline::Config& config, const Poses& poses,
 
 void warn_of_coarseness(const Fused& fused, const dense::Config& config) {
   if (fused.cloud.voxel_m() > config.voxel_m) {
-    spdlog::warn("more than dense.max_voxels = {} voxels: the cloud's are {} m instead of {} m",
+    spdlog::warn("more than dense.max_voxels = {} voxels: voxel size {} m instead of {} m",
                  config.max_voxels, fused.cloud.voxel_m(), config.voxel_m);
   }
   if (fused.scans.stride_views() > 1) {
     spdlog::warn(
-        "more than dense.max_scan_points = {} points: the grid is made of one keyframe in "
+        "more than dense.max_scan_points = {} points: the grid uses one keyframe in "
         "{}",
         config.max_scan_points, fused.scans.stride_views());
   }
@@ -243,7 +243,7 @@ void publish(Made& made, const DenseFiles& files) {
   made.files.publish();
 }
 
-// Before the work, so that nobody waits for files that cannot be written.
+// Before the work, to fail early for files that cannot be written.
 void check_folders(const DenseFiles& files) {
   for (const auto& file : {files.cloud, files.grid, files.octree}) {
     if (file.empty()) continue;

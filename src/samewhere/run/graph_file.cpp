@@ -17,7 +17,7 @@
 namespace samewhere::run {
 namespace {
 
-constexpr double kBelieved = 0.5;  // of a loop's weight
+constexpr double kAccepted = 0.5;  // of a loop's weight
 
 std::size_t num_loops(const optimize::PoseGraph& graph) {
   return static_cast<std::size_t>(std::count_if(graph.edges.begin(), graph.edges.end(),
@@ -49,20 +49,20 @@ std::vector<report::Figure> figures_of_graph(const optimize::G2oGraph& file) {
   std::vector<report::Figure> figures = {
       {"poses", fmt::format("{} in {}", graph.world_from_node.size(),
                             graph.is_planar ? "the plane" : "space")},
-      {"edges", fmt::format("{}: {} from a pose to the next, {} loops", graph.edges.size(),
+      {"edges", fmt::format("{}: {} odometry, {} loops", graph.edges.size(),
                             graph.edges.size() - loops, loops)}};
   if (file.is_without_vertices)
-    figures.push_back({"vertices", "none in the file; poses laid out along the edges"});
+    figures.push_back({"vertices", "none in the file; poses initialized along the edges"});
   if (const std::size_t alone = num_alone(graph); alone > 0)
     figures.push_back({"poses without an edge", fmt::format("{}, left out", alone)});
   if (const std::size_t parts = num_parts(graph) - num_alone(graph); parts > 1)
-    figures.push_back({"parts", fmt::format("{}, each solved by itself", parts)});
+    figures.push_back({"parts", fmt::format("{}, each optimized separately", parts)});
   for (const auto& [type, count] : file.skipped)
     figures.push_back({"lines left out", fmt::format("{} of unknown type {}", count, type)});
   return figures;
 }
 
-// Of the edges believed, or of all of them, with g2o's error.
+// Of the accepted edges, or of all, with the error of g2o.
 double g2o_chi2(const optimize::PoseGraph& graph, const std::vector<double>& weights) {
   double sum = 0.0;
   for (std::size_t i = 0; i < graph.edges.size(); ++i)
@@ -73,17 +73,17 @@ double g2o_chi2(const optimize::PoseGraph& graph, const std::vector<double>& wei
 std::vector<report::Figure> figures_of_solution(const Solved& solved) {
   const optimize::PoseGraphSummary& summary = solved.summary.solution;
   std::size_t refused = 0;
-  for (const double weight : summary.weights) refused += weight < kBelieved ? 1 : 0;
+  for (const double weight : summary.weights) refused += weight < kAccepted ? 1 : 0;
   return {{"cost before / after",
            fmt::format("{:.6g} / {:.6g} (half of the squared errors; before: of all edges, after: "
-                       "of those believed)",
+                       "of accepted edges)",
                        summary.initial_cost, summary.final_cost)},
           {"chi2 before / after",
-           fmt::format("{:.6g} / {:.6g} (as g2o computes it, of the same edges)",
+           fmt::format("{:.6g} / {:.6g} (as computed by g2o, of the same edges)",
                        solved.g2o_chi2_before, g2o_chi2(solved.graph, summary.weights))},
-          {"loops believed / refused",
+          {"loops accepted / rejected",
            fmt::format("{} / {}", num_loops(solved.graph) - refused, refused)},
-          {"started from", std::string(name_of(solved.summary.start))},
+          {"initial values", std::string(name_of(solved.summary.start))},
           {"iterations", std::to_string(summary.num_iterations)},
           {"converged", summary.has_converged ? "yes" : "no, the iterations ran out"},
           {"time", fmt::format("{:.2f} s", solved.seconds)}};
@@ -109,8 +109,8 @@ report::GraphRecord record_of(const optimize::PoseGraph& graph, std::vector<core
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const optimize::PoseEdge& edge = graph.edges[i];
     auto& pairs = !edge.is_loop             ? record.path
-                  : weights[i] >= kBelieved ? record.believed
-                                            : record.refused;
+                  : weights[i] >= kAccepted ? record.accepted
+                                            : record.rejected;
     pairs.emplace_back(edge.a, edge.b);
   }
   return record;

@@ -40,9 +40,8 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
       {"sessions", std::to_string(sessions.size())},
       {"keyframes / landmarks",
        fmt::format("{} / {}", num_live(map.keyframes), num_live(map.landmarks))},
-      {"frames, of these with a measured pose",
-       fmt::format("{}, {}", extras.frames.size(), num_measured)},
-      {"candidates judged / loops closed",
+      {"frames, with a measured pose", fmt::format("{}, {}", extras.frames.size(), num_measured)},
+      {"loop candidates / loop closures",
        fmt::format("{} / {}", extras.ledger.size(), map.loops.size())}};
   for (const auto& [name, value] : header) figures.push_back({name, value});
   return figures;
@@ -57,7 +56,7 @@ std::vector<core::FramePose> frames_of(const scene::StoredMap& stored, const Map
   const int last = all.back().frame.session();
   if (wanted.session > last || (wanted.session < 0 && last > 0)) {
     throw core::InputError(fmt::format(
-        "--session = {}: the map holds frames of {} sessions, each with stamps of its own; "
+        "--session = {}: the map holds frames of {} sessions, each with its own stamps; "
         "expected one of 0 to {}",
         wanted.session < 0 ? "none" : std::to_string(wanted.session), last + 1, last));
   }

@@ -17,13 +17,13 @@ void require_same_depth(const MapPlan& plan, const scene::MapVersion& known,
   const bool has_run_depth = depth_from == pipeline::DepthFrom::kSensor;
   if (has_run_depth && !has_map_depth) {
     throw core::InputError(plan.known.string() +
-                           ": the map was made without depth, in lengths of its own, and this run "
-                           "has depth; expected one without (--set input.depth=false)");
+                           ": the map was made without depth and has no metric scale, but this run "
+                           "has depth; expected a run without depth (--set input.depth=false)");
   }
   if (has_map_depth && !has_run_depth && !plan.is_known_fixed) {
     throw core::InputError(plan.known.string() +
-                           ": the map was made with depth, which this run lacks and could not add "
-                           "to it; expected --localize");
+                           ": the map was made with depth and this run has none, so that it "
+                           "cannot extend the map; expected --localize");
   }
 }
 

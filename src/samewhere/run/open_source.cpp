@@ -40,7 +40,7 @@ bool is_scale_free(const core::SourceInfo& info) {
 void require_slam_input(const core::SourceInfo& info, const pipeline::Config& config) {
   if (!info.is_calibrated) {
     throw core::InputError(fmt::format(
-        "{}: no camera file, which `samewhere run` needs of a pair of cameras; expected the "
+        "{}: no camera file; `samewhere run` needs one for stereo; expected the "
         "calibration of the recording's format or --camera FILE (`samewhere loops` works without)",
         config.source));
   }

@@ -56,15 +56,13 @@ core::LedgerRow known_of(const scene::LoopEdge& loop, const core::Ledger& ledger
     return row.candidate.id == loop.cause;
   });
   if (found != ledger.end()) return *found;
-  throw InputError(
-      fmt::format("the map has a loop of candidate {}, which is not there", loop.cause.index()));
+  throw InputError(fmt::format("the map has a loop of candidate {}, which loops.json does not have",
+                               loop.cause.index()));
 }
 
 void require_not_lost(const core::LedgerRow& row) {
-  if (!row.candidate.is_lost) return;
-  throw InputError(name_of(row) +
-                   " was taken for a view of which nobody knew where it is; expected a candidate "
-                   "for a loop");
+  if (row.candidate.origin != core::Origin::kRelocalization) return;
+  throw InputError(name_of(row) + " is a relocalization candidate; expected a loop candidate");
 }
 
 const scene::Keyframe& keyframe_of(const MapVersion& map, core::FrameId frame,
@@ -76,13 +74,12 @@ const scene::Keyframe& keyframe_of(const MapVersion& map, core::FrameId frame,
 
 core::Sim3 measured_pose(const core::LedgerRow& row) {
   if (core::is_loop(row.verdict))
-    throw InputError(name_of(row) + " is a loop already; expected one that was refused");
+    throw InputError(name_of(row) + " is a loop closure already; expected a rejected candidate");
   require_not_lost(row);
   const auto pose = core::match_from_query_of(row.verdict);
   if (!pose)
-    throw InputError(
-        fmt::format("{} has no relative pose ({}); expected one whose geometry was measured",
-                    name_of(row), core::reason_of(row.verdict)));
+    throw InputError(fmt::format("{} has no relative pose ({}); expected a candidate with one",
+                                 name_of(row), core::reason_of(row.verdict)));
   return *pose;
 }
 
@@ -95,18 +92,18 @@ scene::LoopEdge forced_edge(const MapVersion& map, const core::LedgerRow& row,
   const double stretch = std::max(std::abs(query.log_scale), std::abs(match.log_scale));
   if (stretch > config.optimize.loop_scale_sigma)
     throw InputError(name_of(row) +
-                     ": loops have changed the lengths of this map without depth, in which its "
-                     "pose was measured");
+                     ": loops have changed the scale of this map without depth since its pose was "
+                     "estimated");
   if (is_without_depth(map) && !is_live(match))
     throw InputError(
-        fmt::format("{}: frame {} is a keyframe no more, and without depth nobody "
-                    "knows what its pose was measured from",
+        fmt::format("{}: frame {} was culled as a keyframe, and without depth the "
+                    "reference of its pose is unknown",
                     name_of(row), match.view.frame.index()));
   const auto edge =
       correct::between_holders(map, {query.id, match.id, rigid_part(match_from_query),
                                      verify::loop_information(config.verify), row.candidate.id,
                                      std::log(match_from_query.scale)});
-  if (!edge) throw InputError(name_of(row) + ": one keyframe stands for both views by now");
+  if (!edge) throw InputError(name_of(row) + ": query and match belong to the same keyframe");
   return *edge;
 }
 
@@ -134,7 +131,7 @@ OverriddenMap overridden(const scene::StoredMap& stored, const core::LedgerRow& 
                          const pipeline::Config& config) {
   const auto& keyframes = stored.map.keyframes;
   if (keyframes.empty() || keyframes.back().view.frame.session() != 0)
-    throw InputError("its map holds more than one run; expected that of a single one");
+    throw InputError("its map holds several runs; expected the map of a single run");
   return override_as == Override::kReject ? with_rejected(stored.map, row, config)
                                           : with_forced(stored.map, row, ledger, config);
 }
@@ -156,27 +153,27 @@ OverriddenMap with_rejected(const MapVersion& map, const core::LedgerRow& row,
   const core::CandidateId cause = row.candidate.id;
   require_not_lost(row);
   if (!core::is_loop(row.verdict) && !holds(map, cause))
-    throw InputError(fmt::format("{} is no loop ({}, {}); expected one that was accepted",
+    throw InputError(fmt::format("{} is no loop closure ({}, {}); expected an accepted candidate",
                                  name_of(row), core::name_of(row.verdict),
                                  core::stage_of(row.verdict)));
   // without a pose, or between views that hang on one keyframe, it moved nothing
   return {holds(map, cause) ? pipeline::without_loop(map, cause, config) : map,
-          {refused(row, "taken back by hand")}};
+          {refused(row, "withdrawn by hand")}};
 }
 
 OverriddenMap with_forced(const MapVersion& map, const core::LedgerRow& row,
                           const core::Ledger& ledger, const pipeline::Config& config) {
   const core::CandidateId cause = row.candidate.id;
   const scene::LoopEdge edge = forced_edge(map, row, config);
-  const auto& rival = core::evidence_of(row.verdict).rival;
+  const auto& competing = core::evidence_of(row.verdict).competing_loop;
   pipeline::Correction correction =
       pipeline::with_loop(holds(map, cause) ? pipeline::without_loop(map, cause, config) : map,
-                          edge, config, rival ? rival->first_loop : core::CandidateId());
+                          edge, config, competing ? competing->first_loop : core::CandidateId());
   const correct::Closing& closing = correction.closing;
   if (closing.refused)
     throw InputError(
-        fmt::format("{}: {}; a larger optimize.loop_chi2, or another "
-                    "optimize.loop_loss, would take it",
+        fmt::format("{}: {}; a larger optimize.loop_chi2 or another "
+                    "optimize.loop_loss would accept it",
                     name_of(row), pipeline::bent_by(*closing.refused, config)));
   OverriddenMap changed{{}, {accepted(row, config, true)}};
   for (const auto& bent : closing.withdrawn)

@@ -118,8 +118,8 @@ void drop_unused_thumbnails(report::RunRecord& record) {
   record.thumbnails = std::move(used);
 }
 
-// Of frames of the known map that the ledger speaks of. Pictures are an extra: without them the run
-// is what it is.
+// Thumbnails of frames of the loaded map that are in the ledger. Optional: without them the run
+// goes on.
 void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& record) try {
   scene::MapFile file = scene::MapFile::open(map);
   for (const core::LedgerRow& row : record.ledger) {
@@ -129,7 +129,7 @@ void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& r
     if (const auto jpeg = file.thumbnail(match)) record.thumbnails[match] = *jpeg;
   }
 } catch (const core::InputError& error) {
-  spdlog::warn("{}; the report lacks its pictures", error.what());
+  spdlog::warn("{}; the report lacks its thumbnails", error.what());
 }
 
 void note_first_pose(const pipeline::Slam& slam, report::RunRecord& record) {
@@ -148,7 +148,7 @@ void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& nam
   drop_unused_thumbnails(record);
 }
 
-// "frames 839 to 853: lengths 1/8.1 of the usual", of at most three; the numbers are of all.
+// "frames 839 to 853: scale 1/8.1 of the usual", of at most three; the numbers are of all.
 report::Figure figure_of(const std::vector<track::ScaleDoubt>& doubts) {
   constexpr std::size_t kMost = 3;
   report::Figure figure{"scale drift suspected", "", {}};
@@ -161,13 +161,13 @@ report::Figure figure_of(const std::vector<track::ScaleDoubt>& doubts) {
     const std::string of_usual = factor < 1.0 ? fmt::format("1/{:.1f} of the usual", 1.0 / factor)
                                               : fmt::format("{:.1f} times the usual", factor);
     figure.value +=
-        fmt::format("{}frames {} to {}: lengths {}", i == 0 ? "" : "; ", first, last, of_usual);
+        fmt::format("{}frames {} to {}: scale {}", i == 0 ? "" : "; ", first, last, of_usual);
   }
   if (doubts.size() > kMost) figure.value += fmt::format("; {} more", doubts.size() - kMost);
   return figure;
 }
 
-// How good it is, as figures, and the truth to be drawn with it.
+// Metrics of the run, and the ground truth for the plot.
 void record_figures(const MappedSlam& mapped, const pipeline::Config& config, const MapPlan& plan,
                     const core::Truth& truth, report::RunRecord& record) {
   const pipeline::Slam& slam = mapped.slam();
@@ -189,8 +189,8 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
     spdlog::warn("scale drift suspected: {}", record.figures.back().value);
   }
   if (evaluation.num_measured == 0 && plan.known.empty())
-    record.figures.push_back({"no start, at the end", slam.why_not_started()});
-  record.figures.push_back(report::figure("starts given up", "{}", slam.num_starts_given_up()));
+    record.figures.push_back({"not initialized, at the end", slam.why_not_started()});
+  record.figures.push_back(report::figure("re-initializations", "{}", slam.num_starts_given_up()));
   record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
                                           num_live(slam.map().keyframes),
                                           num_live(slam.map().landmarks)));
@@ -198,8 +198,8 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   record.truth = aligned_truth(evaluation, truth);
 }
 
-// Frames that geometry takes for a place seen before and no views in a row confirm; none if any are
-// confirmed.
+// Frames whose match passes the geometric checks but no sequence of views confirms; none if any
+// loop was accepted.
 std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger) {
   std::set<core::FrameId> unconfirmed;
   for (const core::LedgerRow* row : report::final_rows(ledger)) {
@@ -211,19 +211,19 @@ std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger) {
   return unconfirmed;
 }
 
-// What whoever wonders why so little was recognised should know.
+// A hint for runs with few or no accepted candidates.
 std::optional<std::string> note_on(const core::Ledger& ledger, const pipeline::Config& config) {
   if (ledger.empty()) {
     return fmt::format(
-        "no frame is more than {} frames older than another that looks like it "
+        "no frame has a similar one more than {} frames before it "
         "(retrieve.window_frames)",
         config.retrieve.window_frames);
   }
   const std::size_t num_unconfirmed = unconfirmed_queries(ledger).size();
   if (num_unconfirmed == 0) return std::nullopt;
   return fmt::format(
-      "{} frames match an earlier one, but no {} views in a row do; where no "
-      "two places look alike, --set verify.min_views=1 believes each view",
+      "{} frames match an earlier one, but no {} consecutive views do; without look-alike "
+      "places, --set verify.min_views=1 accepts single views",
       num_unconfirmed, config.verify.min_views);
 }
 

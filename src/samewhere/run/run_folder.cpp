@@ -116,18 +116,19 @@ std::string picture_of(scene::MapFile& file, core::FrameId frame,
                        const std::filesystem::path& map_path) {
   if (auto jpeg = file.thumbnail(frame)) return *std::move(jpeg);
   throw core::InputError(
-      fmt::format("{}: has no picture of frame {}", map_path.string(), frame.index()));
+      fmt::format("{}: has no thumbnail of frame {}", map_path.string(), frame.index()));
 }
 
 }  // namespace
 
 report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::LedgerRow& row) {
   const std::filesystem::path path = folder / "map.sw";
-  if (row.candidate.is_lost)
-    throw core::InputError(fmt::format(
-        "{}: candidate {} was thought of when nobody knew where frame {} is; expected one of two "
-        "keyframes, others have no picture",
-        folder.string(), row.candidate.id.index(), row.candidate.query.index()));
+  if (row.candidate.origin == core::Origin::kRelocalization)
+    throw core::InputError(
+        fmt::format("{}: candidate {} is a relocalization candidate of frame {}, which has no "
+                    "thumbnail; expected a "
+                    "loop candidate between keyframes",
+                    folder.string(), row.candidate.id.index(), row.candidate.query.index()));
   scene::MapFile file = scene::MapFile::open(path);
   const scene::MapVersion map = file.load().map;
   const features::View& query = view_of(map, row.candidate.query, path);
@@ -158,7 +159,7 @@ core::Truth with_trajectory(core::Truth truth, const std::filesystem::path& file
   };
   if (!estimate.empty() && std::none_of(estimate.begin(), estimate.end(), is_covered)) {
     throw core::InputError(
-        fmt::format("{}: tells of no pose at a time of the run, {:.3f} to {:.3f} s; expected "
+        fmt::format("{}: has no pose at a time of the run, {:.3f} to {:.3f} s; expected "
                     "stamps of the same clock",
                     file.string(), estimate.front().stamp_s, estimate.back().stamp_s));
   }
@@ -195,8 +196,8 @@ std::vector<report::Figure> evaluate_walk(const std::filesystem::path& folder,
   }
   const evaluate::WalkCounts counts = count_walk(evaluate::read_walk(walk), accepted);
   return {report::figure("loops accepted", "{}", counts.num_loops),
-          report::figure("of these between two floors (wrong)", "{}", counts.num_wrong),
-          report::figure("on one floor, of these in one clip", "{}, {}", counts.num_same_floor,
+          report::figure("false loops between two floors", "{}", counts.num_false),
+          report::figure("loops on one floor, in one clip", "{}, {}", counts.num_same_floor,
                          counts.num_same_clip)};
 }
 

@@ -35,9 +35,7 @@ std::vector<std::string> rows_since_by_hand(const std::filesystem::path& map) {
 // A row of the map does not say which number its candidate has. nullptr: none is like that, or
 // several are.
 core::LedgerRow* find(core::Ledger& ledger, const core::Candidate& wanted) {
-  const auto key = [](const core::Candidate& c) {
-    return std::tuple(c.query, c.match, c.is_foretold, c.is_lost, c.is_by_features);
-  };
+  const auto key = [](const core::Candidate& c) { return std::tuple(c.query, c.match, c.origin); };
   core::LedgerRow* found = nullptr;
   for (core::LedgerRow& row : ledger) {
     if (key(row.candidate) != key(wanted)) continue;
@@ -79,8 +77,8 @@ void write_anew(const std::filesystem::path& folder, const core::Ledger& ledger,
   if (!holds_one_run(stored.map)) return;
   write_lists(lists_of(stored, ledger, core::read_file(folder / "frames.csv")), folder);
   spdlog::warn(
-      "{}: its lists were older than its map, since a change by hand was cut short; they were "
-      "written anew from the map",
+      "{}: its files were older than its map, since `samewhere ledger` was interrupted; they were "
+      "written again from the map",
       folder.string());
 }
 
@@ -116,7 +114,7 @@ core::Ledger ledger_in_step(const std::filesystem::path& folder, const core::Fol
     write_anew(folder, of_map, held);
     return of_map;
   } catch (const core::InputError& error) {
-    spdlog::warn("{}; whether the lists of {} go with its map is not known", error.what(),
+    spdlog::warn("{}; cannot check whether the files of {} match its map", error.what(),
                  folder.string());
   }
   return ledger;

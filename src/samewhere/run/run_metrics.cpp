@@ -105,17 +105,16 @@ bool speaks_rather(const FoundAgain& a, const FoundAgain& b) {
 // Whether an earlier visit was joined by who was found again in this one.
 bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& found_again) {
   return std::any_of(found_again.loops.begin(), found_again.loops.end(), [&](const auto& checked) {
-    return checked.truth == evaluate::LoopTruth::kRight && checked.loop.match < revisit.first &&
+    return checked.truth == evaluate::LoopTruth::kTrue && checked.loop.match < revisit.first &&
            revisit.first <= checked.loop.query && checked.loop.query <= revisit.last;
   });
 }
 
 Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
   return figure(
-      fmt::format("squared error of {} over its belief",
-                  num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
-      "{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
-      drift.band_low, drift.band_high, drift.median, drift.num_motions);
+      num_edges == 1 ? "odometry NEES" : fmt::format("odometry NEES over {} edges", num_edges),
+      "{:.1f} (consistent: 6, {:.1f} to {:.1f}; median {:.1f}; n = {})", drift.mean, drift.band_low,
+      drift.band_high, drift.median, drift.num_motions);
 }
 
 }  // namespace
@@ -133,7 +132,7 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
   findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
   findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
   for (const auto* row : rows) {
-    if (row->candidate.is_lost) continue;  // a place, no loop
+    if (row->candidate.origin == core::Origin::kRelocalization) continue;  // a place, no loop
     if (has_matches(row->verdict)) {
       findings.matching.push_back({static_cast<int>(row->candidate.query.index()),
                                    static_cast<int>(row->candidate.match.index())});
@@ -147,7 +146,8 @@ void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
   std::map<core::FrameId, FoundAgain> best;
   for (const auto* row : report::final_rows(ledger)) {
     const core::Candidate& candidate = row->candidate;
-    const bool is_told = candidate.is_lost && core::is_loop(row->verdict) &&
+    const bool is_told = candidate.origin == core::Origin::kRelocalization &&
+                         core::is_loop(row->verdict) &&
                          candidate.match.session() == candidate.query.session();
     if (!is_told || !resumed.contains(candidate.query)) continue;
     const auto found = found_again(loop_of(*row, stamp_of), findings.trajectory);
@@ -202,10 +202,10 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   }
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
   evaluation.num_withdrawn = findings.num_withdrawn;
-  if (!truth.impostors.empty()) {
-    evaluation.num_impostors_matching = static_cast<int>(
+  if (!truth.aliased_pairs.empty()) {
+    evaluation.num_aliased_matching = static_cast<int>(
         std::count_if(findings.matching.begin(), findings.matching.end(), [&](const auto& pair) {
-          return evaluate::are_impostors(truth.impostors, pair.query, pair.match);
+          return evaluate::is_aliased_pair(truth.aliased_pairs, pair.query, pair.match);
         }));
   }
   for (const auto& [num_edges, motions] : findings.odometry_chains) {
@@ -237,9 +237,9 @@ RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
     evaluation.accepted = evaluate::count_accepted(*truth.places, as_matches(findings.accepted),
                                                    findings.window_frames);
   }
-  if (!truth.impostors.empty()) {
-    evaluation.num_impostors = evaluate::count_accepted_impostors(
-        truth.impostors, as_matches(findings.accepted), findings.window_frames);
+  if (!truth.aliased_pairs.empty()) {
+    evaluation.num_aliased = evaluate::count_accepted_aliased(
+        truth.aliased_pairs, as_matches(findings.accepted), findings.window_frames);
   }
   return evaluation;
 }
@@ -256,50 +256,51 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   for (const auto& [num_edges, drift] : evaluation.drift_model)
     figures.push_back(figure_of_drift(num_edges, drift));
   const auto& loops = evaluation.loops;
-  figures.push_back(figure("candidates judged", "{}", evaluation.num_candidates));
-  figures.push_back(figure("loops accepted: right / wrong / unknown", "{} / {} / {}",
-                           loops.num_right, loops.num_wrong, loops.num_unknown));
+  figures.push_back(figure("loop candidates", "{}", evaluation.num_candidates));
+  figures.push_back(figure("loops accepted: true / false / unknown", "{} / {} / {}", loops.num_true,
+                           loops.num_false, loops.num_unknown));
   if (evaluation.num_of_known_map > 0) {
-    figures.push_back(figure("candidates of the known map / accepted", "{} / {}",
+    figures.push_back(figure("candidates in the loaded map / accepted", "{} / {}",
                              evaluation.num_of_known_map, evaluation.num_known_places));
   }
-  if (evaluation.num_impostors_matching) {
-    figures.push_back(figure("of the wrong ones, impostors", "{}", loops.num_impostors));
-    figures.push_back(figure("impostors among the candidates with enough matches", "{}",
-                             *evaluation.num_impostors_matching));
+  if (evaluation.num_aliased_matching) {
+    figures.push_back(figure("false loops between look-alike places", "{}", loops.num_aliased));
+    figures.push_back(figure("look-alike candidates with enough matches", "{}",
+                             *evaluation.num_aliased_matching));
   }
   if (loops.num_revisits > 0) {
     figures.push_back(figure("revisits closed", "{} of {}", loops.num_closed, loops.num_revisits));
   }
   if (const auto& again = evaluation.found_again; !again.loops.empty()) {
-    figures.push_back(figure("lost and found again: right / wrong / unknown", "{} / {} / {}",
-                             again.num_right, again.num_wrong, again.num_unknown));
+    figures.push_back(figure("relocalizations: correct / wrong / unknown", "{} / {} / {}",
+                             again.num_true, again.num_false, again.num_unknown));
     if (loops.num_revisits > 0) {
-      figures.push_back(figure("revisits closed, or found again in", "{} of {}",
+      figures.push_back(figure("revisits closed or relocalized", "{} of {}",
                                evaluation.num_rejoined, loops.num_revisits));
     }
   }
   if (evaluation.num_refused_by_graph + evaluation.num_withdrawn > 0) {
-    figures.push_back(figure("loops refused by the pose graph: at once / later", "{} / {}",
+    figures.push_back(figure("loops rejected by the pose graph: at once / later", "{} / {}",
                              evaluation.num_refused_by_graph, evaluation.num_withdrawn));
   }
   return figures;
 }
 
 std::vector<Figure> figures_of(const RecognitionEvaluation& evaluation) {
-  std::vector<Figure> figures = {figure("candidates judged", "{}", evaluation.num_candidates)};
+  std::vector<Figure> figures = {figure("loop candidates", "{}", evaluation.num_candidates)};
   if (const auto& counts = evaluation.accepted) {
-    figures.push_back(figure("accepted: right / wrong / near", "{} / {} / {}", counts->num_right,
-                             counts->num_wrong, counts->num_near));
+    figures.push_back(figure("accepted: true / false / near", "{} / {} / {}", counts->num_true,
+                             counts->num_false, counts->num_near));
   } else {
     figures.push_back(figure("accepted", "{}", evaluation.num_accepted));
   }
-  if (evaluation.num_impostors) {
-    figures.push_back(figure("of the wrong ones, impostors", "{}", *evaluation.num_impostors));
+  if (evaluation.num_aliased) {
+    figures.push_back(
+        figure("false loops between look-alike places", "{}", *evaluation.num_aliased));
   }
   if (const auto& curve = evaluation.curve) {
-    figures.push_back(figure("queries, of these with a loop", "{}, {}", curve->num_queries,
-                             curve->num_with_loop));
+    figures.push_back(
+        figure("queries, with a true loop", "{}, {}", curve->num_queries, curve->num_with_loop));
     figures.push_back(figure("AUC", "{:.4f}", curve->auc));
     figures.push_back(
         figure("recall at 100 % precision", "{:.4f}", curve->recall_at_full_precision));

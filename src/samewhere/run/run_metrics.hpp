@@ -66,7 +66,7 @@ struct SlamEvaluation {
   int num_rejoined = 0;  // revisits with a right loop, or of one who was rightly found again
   int num_refused_by_graph = 0;
   int num_withdrawn = 0;
-  std::optional<int> num_impostors_matching;  // of the candidates; only if the truth names any
+  std::optional<int> num_aliased_matching;  // of the candidates; only if the truth names any
   std::map<int, evaluate::Consistency> drift_model;  // by the number of edges
 };
 
@@ -90,7 +90,7 @@ struct RecognitionEvaluation {
   int num_accepted = 0;
   std::optional<evaluate::PrecisionRecall> curve;    // of the scores of all matches
   std::optional<evaluate::AcceptedCounts> accepted;  // at the shipped threshold
-  std::optional<int> num_impostors;                  // of the accepted; only if the truth names any
+  std::optional<int> num_aliased;                    // of the accepted; only if the truth names any
 };
 
 // A run that was cut short is scored as far as it went: queries that were never asked count as

@@ -34,7 +34,7 @@ class LostAndFound : public testing::Test {
     ledger_.push_back({{.id = loop.candidate,
                         .query = core::FrameId(static_cast<std::uint64_t>(query)),
                         .match = core::FrameId(static_cast<std::uint64_t>(match)),
-                        .is_lost = true},
+                        .origin = core::Origin::kRelocalization},
                        loop});
   }
 
@@ -63,8 +63,8 @@ std::string figure(const SlamEvaluation& evaluation, const std::string& name) {
   return it == figures.end() ? "" : it->value;
 }
 
-constexpr const char* kFound = "lost and found again: right / wrong / unknown";
-constexpr const char* kRejoined = "revisits closed, or found again in";
+constexpr const char* kFound = "relocalizations: correct / wrong / unknown";
+constexpr const char* kRejoined = "revisits closed or relocalized";
 
 TEST_F(LostAndFound, InTheRightPlaceWhichIsNoLoop) {
   recognised(12, 5, 2.0);  // believed by one view, but it is not where he ends
@@ -73,7 +73,7 @@ TEST_F(LostAndFound, InTheRightPlaceWhichIsNoLoop) {
   EXPECT_EQ(figure(evaluation, kFound), "1 / 0 / 0");
   EXPECT_EQ(figure(evaluation, kRejoined), "1 of 1");
   EXPECT_EQ(figure(evaluation, "revisits closed"), "0 of 1");
-  EXPECT_EQ(evaluation.loops.num_right, 0);
+  EXPECT_EQ(evaluation.loops.num_true, 0);
 }
 
 TEST_F(LostAndFound, InItsCopyWhichIsWrong) {

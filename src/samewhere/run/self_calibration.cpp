@@ -93,7 +93,7 @@ std::optional<SelfCalibration> calibrate_if_unknown(std::unique_ptr<core::Source
   SelfCalibration calibration{guess.camera, guess.camera.fx_px, std::nullopt};
   spdlog::warn(
       "{}: no calibration; focal length {:.1f} px from {}, no distortion. --camera FILE gives the "
-      "right one, `samewhere calibrate` measures it",
+      "calibrated one, `samewhere calibrate` writes it",
       config.source, calibration.guessed_px, guess.reason);
   const bool may_refine =
       !info.is_live && config.input.fov_deg == 0.0 && config.input.focal_length_keyframes > 0;
@@ -105,7 +105,7 @@ std::optional<SelfCalibration> calibrate_if_unknown(std::unique_ptr<core::Source
                    focal_length_figure(calibration).value);
     } else {
       spdlog::warn(
-          "{}: the beginning of the recording does not tell the focal length; the guess "
+          "{}: the focal length is not observable in the first part of the recording; the guess "
           "stays",
           config.source);
     }

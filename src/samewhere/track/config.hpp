@@ -15,28 +15,26 @@ struct DriftConfig {
 
 inline void visit_fields(DriftConfig& config, core::FieldVisitor& visit) {
   visit("factor", config.factor,
-        {.help = "errors of odometry are this many times what the residuals of a frame leave open",
+        {.help = "with depth: standard deviation of odometry over that of the residuals",
          .min = 0.01,
          .max = 100.0});
   visit("factor_without_depth", config.factor_without_depth,
-        {.help = "the same of a camera without depth, whose local map is known less well",
-         .min = 0.01,
-         .max = 100.0});
+        {.help = "without depth: the same", .min = 0.01, .max = 100.0});
   visit("per_metre", config.per_metre,
-        {.help = "error per metre moved, of a camera that is calibrated as well as most, metres",
-         .min = 0.0,
-         .max = 1.0});
+        {.help = "standard deviation per metre of translation, metres", .min = 0.0, .max = 1.0});
   visit("per_radian", config.per_radian,
-        {.help = "the same per radian turned, radians", .min = 0.0, .max = 1.0});
+        {.help = "standard deviation per radian of rotation, radians", .min = 0.0, .max = 1.0});
   visit("weak_factor", config.weak_factor,
-        {.help = "all errors times this while tracking is weak", .min = 1.0, .max = 100.0});
+        {.help = "factor on all standard deviations while the pose is weak",
+         .min = 1.0,
+         .max = 100.0});
 }
 
 // What relates two views (two_view_model.hpp).
 enum class StartModel { kHomographyOrEssential, kFundamental };
 
 // How a camera without depth starts, from two views.
-struct StartConfig {
+struct InitializationConfig {
   StartModel model = StartModel::kHomographyOrEssential;
   int min_matches = 100;
   int min_points = 60;
@@ -45,99 +43,201 @@ struct StartConfig {
   double min_homography_ratio = 0.45;
   double min_parallax_rad = 0.02;
   double min_point_parallax_rad = 0.01;
-  double max_rival_ratio = 0.7;
+  double max_competing_ratio = 0.7;
   int max_waiting_frames = 300;
   int provisional_keyframes = 20;
   double provisional_s = 5.0;
 };
 
 // When a start is given up.
-inline void visit_giving_up(StartConfig& config, core::FieldVisitor& visit) {
+inline void visit_giving_up(InitializationConfig& config, core::FieldVisitor& visit) {
   visit("max_waiting_frames", config.max_waiting_frames,
-        {.help = "frames after which a first view without a start gives up its place",
-         .min = 1,
-         .max = 100000});
+        {.help = "frames after which the first view is replaced", .min = 1, .max = 100000});
   visit("provisional_keyframes", config.provisional_keyframes,
-        {.help = "a map that is lost before it has so many keyframes is given up for a new start",
+        {.help = "a map with fewer keyframes is re-initialized after tracking loss",
          .min = 0,
          .max = 10000});
   visit("provisional_s", config.provisional_s,
-        {.help = "with depth also one that was followed for less, seconds, and is lost for longer: "
-                 "in a crowd every frame is a keyframe",
+        {.help = "with depth: a map tracked for less is re-initialized if it is lost for longer, s",
          .min = 0.0,
          .max = 3600.0});
 }
 
-inline void visit_fields(StartConfig& config, core::FieldVisitor& visit) {
+inline void visit_fields(InitializationConfig& config, core::FieldVisitor& visit) {
   visit("model", config.model,
-        {.help = "of the two views, from which R and t are taken: the better of homography and "
-                 "essential matrix, or the fundamental matrix, eq. (18)-(22)",
+        {.help = "two-view model: the better of homography and essential matrix, or the "
+                 "fundamental matrix, eq. (18)-(22)",
          .choices = {"homography_or_essential", "fundamental"}});
-  visit(
-      "min_matches", config.min_matches,
-      {.help = "fewer matches of the two views are no start, and the later view becomes the first",
-       .min = 8,
-       .max = 10000});
+  visit("min_matches", config.min_matches,
+        {.help = "least matches of the two views; with fewer the later view becomes the first",
+         .min = 8,
+         .max = 10000});
   visit("min_points", config.min_points,
-        {.help = "fewer points in front of both views are no start", .min = 8, .max = 10000});
+        {.help = "least triangulated points in front of both cameras", .min = 8, .max = 10000});
   visit("max_error_px", config.max_error_px,
-        {.help = "error of a match that agrees with a motion", .min = 0.1, .max = 50.0});
+        {.help = "largest reprojection error of an inlier, pixels", .min = 0.1, .max = 50.0});
   visit("ransac_iterations", config.ransac_iterations,
-        {.help = "RANSAC samples of either model at most", .min = 1, .max = 100000});
+        {.help = "largest number of RANSAC samples per model", .min = 1, .max = 100000});
   visit("min_homography_ratio", config.min_homography_ratio,
-        {.help =
-             "share of the homography in the scores of both models from which it is chosen, or the "
-             "fundamental matrix refused",
+        {.help = "least share of the homography in the two scores for which it is chosen; with "
+                 "`fundamental`: for which the start is rejected (ORB-SLAM, TRO 2015)",
          .min = 0.0,
          .max = 1.0});
   visit("min_parallax_rad", config.min_parallax_rad,
-        {.help = "median parallax of a start, radians; less is a rotation",
-         .min = 0.001,
-         .max = 1.0});
+        {.help = "least median parallax, radians", .min = 0.001, .max = 1.0});
   visit("min_point_parallax_rad", config.min_point_parallax_rad,
-        {.help = "matches with less parallax become no points, radians", .min = 0.0, .max = 1.0});
-  visit("max_rival_ratio", config.max_rival_ratio,
-        {.help = "a second motion that explains this share of the best one's matches is ambiguity",
+        {.help = "least parallax of a triangulated point, radians", .min = 0.0, .max = 1.0});
+  visit("max_competing_ratio", config.max_competing_ratio,
+        {.help = "ambiguous if a second motion has more than this share of the best one's inliers",
          .min = 0.1,
          .max = 1.0});
   visit_giving_up(config, visit);
 }
 
 // Who has lost his place, and where he may be found.
-struct LostConfig {
+struct RelocalizationConfig {
   double max_speed_m_s = 3.0;
   double max_ratio_without_depth = 0.9;
-  double max_rival_ratio = 0.75;
-  int views_to_resume = 5;
-  int frames_to_restart = 30;
+  double max_competing_ratio = 0.75;
+  int min_views = 5;
+  int reinitialize_after_frames = 30;
 };
 
-inline void visit_fields(LostConfig& config, core::FieldVisitor& visit) {
-  visit("max_speed_m_s", config.max_speed_m_s,
-        {.help = "who is lost is found nowhere beyond what this speed reaches since the last pose; "
-                 "without depth there are no metres, and no limit",
-         .min = 0.01,
-         .max = 1000.0});
+inline void visit_fields(RelocalizationConfig& config, core::FieldVisitor& visit) {
+  visit(
+      "max_speed_m_s", config.max_speed_m_s,
+      {.help =
+           "with depth: poses beyond the reach of this speed since the last pose are rejected, m/s",
+       .min = 0.01,
+       .max = 1000.0});
   visit("max_ratio_without_depth", config.max_ratio_without_depth,
-        {.help = "features.max_ratio of who is lost where depths come from motion: few landmarks "
-                 "hold a pose, and the pose sorts out what matches wrongly",
-         .min = 0.1,
-         .max = 1.0});
-  visit("max_rival_ratio", config.max_rival_ratio,
-        {.help = "nobody is found while another place of the map has more than this share of the "
-                 "best one's inliers, or of its inliers for each landmark in sight, in what the "
-                 "map shows at both",
+        {.help = "without depth: features.max_ratio in relocalization", .min = 0.1, .max = 1.0});
+  visit("max_competing_ratio", config.max_competing_ratio,
+        {.help = "ambiguous if a competing place has more than this share of the best one's "
+                 "inliers, or of its inliers per visible landmark",
          .min = 0.0,
          .max = 1.0});
-  visit("views_to_resume", config.views_to_resume,
-        {.help = "so many views must speak for a place; after less than a second one is enough",
+  visit("min_views", config.min_views,
+        {.help = "views that must support the place; one is enough within 1 s of tracking loss",
          .min = 1,
          .max = 10});
-  visit("frames_to_restart", config.frames_to_restart,
-        {.help = "with depth, lost for so many frames in a map of fewer than "
-                 "start.provisional_keyframes: it is given up for a new start",
+  visit("reinitialize_after_frames", config.reinitialize_after_frames,
+        {.help = "with depth: lost frames after which a map with fewer than provisional_keyframes "
+                 "is re-initialized",
          .min = 1,
          .max = 1000000});
+}
+
+// Motion between two depth images, point to plane (depth_alignment.hpp).
+struct DepthAlignmentConfig {
+  double min_agreement = 0.9;
+  int iterations = 20;
+  double first_tukey = 12.0;
+  double tukey = 4.0;
+  double max_distance_m = 0.3;
+  double max_step_ratio = 0.1;
+  double min_patch_ratio = 0.0625;
+  double min_eigenvalue = 0.005;
+  double correlation = 10.0;
+  double max_sigma_m = 0.03;
+  double max_sigma_rad = 0.02;
+  double sigma_m = 0.002;
+  double sigma_per_square_m = 0.002;
+};
+
+inline void visit_alignment_method(DepthAlignmentConfig& config, core::FieldVisitor& visit) {
+  visit("iterations", config.iterations,
+        {.help = "largest number of Gauss-Newton iterations",
+         .min = 1,
+         .max = 200,
+         .is_expert = true});
+  visit("first_tukey", config.first_tukey,
+        {.help = "width of the Tukey loss in the first iteration, standard deviations",
+         .min = 1.0,
+         .max = 100.0,
+         .is_expert = true});
+  visit("tukey", config.tukey,
+        {.help = "width of the Tukey loss in the last iteration, standard deviations (4.685: 95 % "
+                 "efficiency)",
+         .min = 1.0,
+         .max = 100.0,
+         .is_expert = true});
+  visit("max_distance_m", config.max_distance_m,
+        {.help = "largest distance of associated points, metres",
+         .min = 0.01,
+         .max = 10.0,
+         .is_expert = true});
+  visit("max_step_ratio", config.max_step_ratio,
+        {.help = "relative depth step that separates two surfaces",
+         .min = 0.001,
+         .max = 1.0,
+         .is_expert = true});
+}
+
+inline void visit_alignment_acceptance(DepthAlignmentConfig& config, core::FieldVisitor& visit) {
+  visit("min_patch_ratio", config.min_patch_ratio,
+        {.help = "least share of the 8 x 8 pixel patches that must be inliers",
+         .min = 0.0,
+         .max = 1.0,
+         .is_expert = true});
+  visit("min_eigenvalue", config.min_eigenvalue,
+        {.help = "least eigenvalue of the mean normal matrix; noise on one bare wall has 0.0005",
+         .min = 0.0,
+         .max = 1.0,
+         .is_expert = true});
+  visit("correlation", config.correlation,
+        {.help = "factor on standard deviations, because errors of neighbouring patches correlate",
+         .min = 1.0,
+         .max = 1000.0,
+         .is_expert = true});
+  visit("max_sigma_m", config.max_sigma_m,
+        {.help = "largest standard deviation of the translation, metres",
+         .min = 1e-4,
+         .max = 10.0,
+         .is_expert = true});
+  visit("max_sigma_rad", config.max_sigma_rad,
+        {.help = "largest standard deviation of the rotation, radians",
+         .min = 1e-4,
+         .max = 3.0,
+         .is_expert = true});
+  visit("sigma_m", config.sigma_m,
+        {.help = "standard deviation of a depth, constant part, metres",
+         .min = 1e-5,
+         .max = 1.0,
+         .is_expert = true});
+  visit("sigma_per_square_m", config.sigma_per_square_m,
+        {.help = "the part that grows with the square of the depth, metres per square metre",
+         .min = 0.0,
+         .max = 1.0,
+         .is_expert = true});
+}
+
+inline void visit_fields(DepthAlignmentConfig& config, core::FieldVisitor& visit) {
+  visit("min_agreement", config.min_agreement,
+        {.help = "few features: least share of the surface points common to both depth images "
+                 "that must agree; above 1: off",
+         .min = 0.0,
+         .max = 1.1});
+  visit_alignment_method(config, visit);
+  visit_alignment_acceptance(config, visit);
+}
+
+// Moving objects: landmarks in front of a surface seen before (free_space.hpp).
+struct FreeSpaceConfig {
+  double margin_m = 0.15;
+  double margin_per_metre = 0.1;
+};
+
+inline void visit_fields(FreeSpaceConfig& config, core::FieldVisitor& visit) {
+  visit("margin_m", config.margin_m,
+        {.help = "a point nearer than the surface of earlier depth images by more is moving, "
+                 "metres",
+         .min = 0.0,
+         .max = 10.0,
+         .is_expert = true});
+  visit(
+      "margin_per_metre", config.margin_per_metre,
+      {.help = "additional margin per metre of depth", .min = 0.0, .max = 1.0, .is_expert = true});
 }
 
 struct Config {
@@ -149,49 +249,48 @@ struct Config {
   int min_inliers = 15;
   int weak_inliers = 40;
   int sure_inliers = 100;
-  double min_share_by_depth = 0.9;
   double max_scale_change = 4.0;
-  LostConfig lost;
-  StartConfig start;
+  RelocalizationConfig relocalization;
+  InitializationConfig initialization;
   DriftConfig drift;
+  DepthAlignmentConfig depth_alignment;
+  FreeSpaceConfig free_space;
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("near_radius_px", config.near_radius_px,
-        {.help = "search radius around a landmark's predicted pixel", .min = 1.0, .max = 500.0});
+        {.help = "search radius around a landmark's predicted pixel, pixels",
+         .min = 1.0,
+         .max = 500.0});
   visit("far_radius_px", config.far_radius_px,
-        {.help = "the same when that finds no sure pose", .min = 1.0, .max = 1000.0});
+        {.help = "search radius after too few inliers, pixels", .min = 1.0, .max = 1000.0});
   visit("refine_radius_px", config.refine_radius_px,
-        {.help = "the same once the pose is known, to collect what was missed",
-         .min = 0.5,
-         .max = 100.0});
+        {.help = "search radius with the estimated pose, pixels", .min = 0.5, .max = 100.0});
   visit("max_error_px", config.max_error_px,
-        {.help = "reprojection error of a RANSAC inlier", .min = 0.1, .max = 50.0});
+        {.help = "largest reprojection error of a RANSAC inlier, pixels", .min = 0.1, .max = 50.0});
   visit("ransac_iterations", config.ransac_iterations,
-        {.help = "RANSAC samples at most", .min = 1, .max = 100000});
+        {.help = "largest number of RANSAC samples", .min = 1, .max = 100000});
   visit("min_inliers", config.min_inliers,
-        {.help = "fewer inliers are no pose", .min = 6, .max = 1000});
+        {.help = "least inliers of a pose", .min = 6, .max = 1000});
   visit("weak_inliers", config.weak_inliers,
-        {.help = "fewer inliers are a weak pose", .min = 6, .max = 1000});
+        {.help = "fewer inliers: the pose is weak", .min = 6, .max = 1000});
   visit("sure_inliers", config.sure_inliers,
-        {.help = "fewer inliers near the prediction may agree by chance: the search is widened",
+        {.help = "fewer inliers after the first search: the search radius is enlarged",
          .min = 6,
          .max = 10000});
-  visit("min_share_by_depth", config.min_share_by_depth,
-        {.help = "where features hold a weak pose or none, this share of the surfaces that both "
-                 "depth pictures show must lie on each other, and holds it; above 1: never",
-         .min = 0.0,
-         .max = 1.1});
   visit("max_scale_change", config.max_scale_change,
-        {.help = "without depth: camera and landmarks in sight so many times slower and nearer (or "
-                 "faster and farther) than usual, both at once and lasting: the scale is suspected "
-                 "to have changed, and poses are weak; up to 1: nothing is suspected",
+        {.help = "without depth: change of speed and of landmark depth, both by this factor, from "
+                 "which scale drift is suspected and poses are weak; up to 1: off",
          .min = 0.0,
          .max = 1000.0});
-  visit("lost", config.lost, {.help = "Who has lost his place, and where he may be found"});
-  visit("start", config.start, {.help = "How a camera without depth starts, from two views"});
+  visit("relocalization", config.relocalization, {.help = "Relocalization"});
+  visit("initialization", config.initialization,
+        {.help = "Initialization of one camera without depth, from two views"});
   visit("drift", config.drift,
-        {.help = "Error model of the odometry, from which its information is made"});
+        {.help = "Drift model of the odometry, from which its information is derived"});
+  visit("depth_alignment", config.depth_alignment,
+        {.help = "Depth alignment, where features are few (decision 024)"});
+  visit("free_space", config.free_space, {.help = "Moving objects by free space"});
 }
 
 }  // namespace samewhere::track

@@ -13,23 +13,12 @@ namespace samewhere::track {
 namespace {
 
 constexpr int kStep_px = 8;
-constexpr double kMaxJump = 0.1;  // of the depth, on one surface
-constexpr int kIterations = 20;
 constexpr double kConverged = 1e-5;
-constexpr double kTukey = 4.0;        // sigmas
-constexpr double kFirstTukey = 12.0;  // as the guess may be off
-constexpr double kMaxMisfit_m = 0.3;  // of a patch from the one it falls on
-constexpr std::size_t kMinPart = 16;  // of all patches, this part must agree
-// What holds the direction that is held least: the mean square of the normals along it, turns at
-// the mean depth. Noise makes 0.0005 of one bare wall.
-constexpr double kMinHold = 0.005;
-// Errors of neighbouring patches are alike: so many times less is known than if they were not.
-constexpr double kAlike = 10.0;
-constexpr double kMaxSigma_m = 0.03;
-constexpr double kMaxSigma_rad = 0.02;
 
-// Of the distance of a point from a plane: a sensor's error grows with the square of the depth.
-double sigma_m(double depth_m) { return 0.002 + 0.002 * depth_m * depth_m; }
+// Standard deviation of the distance of a point from a plane: grows with the square of the depth.
+double sigma_m(double depth_m, const DepthAlignmentConfig& config) {
+  return config.sigma_m + config.sigma_per_square_m * depth_m * depth_m;
+}
 
 struct Equations {
   core::Matrix6d hessian = core::Matrix6d::Zero();
@@ -42,7 +31,7 @@ struct Equations {
 };
 
 Equations linearise(const Surfaces& earlier, const Surfaces& later, const core::Rigid3& pose,
-                    double tukey) {
+                    double tukey, const DepthAlignmentConfig& config) {
   Equations sum;
   for (const Surfaces::Patch& patch : later.patches()) {
     if (patch.normal.isZero()) continue;
@@ -52,8 +41,8 @@ Equations linearise(const Surfaces& earlier, const Surfaces& later, const core::
     if (on == nullptr) continue;
     ++sum.num_asked;
     const Eigen::Vector3d misfit = point - on->point;
-    const double residual = on->normal.dot(misfit) / sigma_m(patch.point.z());
-    if (std::abs(residual) >= tukey || misfit.norm() > kMaxMisfit_m) continue;
+    const double residual = on->normal.dot(misfit) / sigma_m(patch.point.z(), config);
+    if (std::abs(residual) >= tukey || misfit.norm() > config.max_distance_m) continue;
     ++sum.num_inliers;
     const double root = 1.0 - (residual / tukey) * (residual / tukey);
     core::Vector6d by_pose;
@@ -61,7 +50,7 @@ Equations linearise(const Surfaces& earlier, const Surfaces& later, const core::
     sum.directions += root * root * by_pose * by_pose.transpose();
     sum.weight += root * root;
     sum.depth_m += root * root * patch.point.z();
-    by_pose /= sigma_m(patch.point.z());
+    by_pose /= sigma_m(patch.point.z(), config);
     sum.hessian += root * root * by_pose * by_pose.transpose();
     sum.gradient += root * root * residual * by_pose;
   }
@@ -69,29 +58,29 @@ Equations linearise(const Surfaces& earlier, const Surfaces& later, const core::
 }
 
 // That of one wall depends on the noise of its normals alone, and is no small covariance.
-bool is_held(const Equations& sum) {
+bool is_held(const Equations& sum, double min_eigenvalue) {
   core::Vector6d scale = core::Vector6d::Ones();
   scale.tail<3>().setConstant(sum.weight / sum.depth_m);
   const core::Matrix6d scaled =
       scale.asDiagonal() * sum.directions * scale.asDiagonal() / sum.weight;
   return Eigen::SelfAdjointEigenSolver<core::Matrix6d>(scaled, Eigen::EigenvaluesOnly)
              .eigenvalues()
-             .minCoeff() > kMinHold;
+             .minCoeff() > min_eigenvalue;
 }
 
-bool is_sure(const core::Matrix6d& covariance) {
+bool is_sure(const core::Matrix6d& covariance, const DepthAlignmentConfig& config) {
   const auto largest = [](const Eigen::Matrix3d& block) {
     return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly)
                          .eigenvalues()
                          .maxCoeff());
   };
-  return largest(covariance.topLeftCorner<3, 3>()) < kMaxSigma_m &&
-         largest(covariance.bottomRightCorner<3, 3>()) < kMaxSigma_rad;
+  return largest(covariance.topLeftCorner<3, 3>()) < config.max_sigma_m &&
+         largest(covariance.bottomRightCorner<3, 3>()) < config.max_sigma_rad;
 }
 
 // Metres along the optical axis, by the mean of the inverse depths, which are straight on a plane;
 // 0: less than half is known, or it is an edge.
-double depth_of_cell(const cv::Mat& depth_m) {
+double depth_of_cell(const cv::Mat& depth_m, double max_step_ratio) {
   double sum = 0.0;
   double nearest_m = std::numeric_limits<double>::infinity();
   double farthest_m = 0.0;
@@ -107,14 +96,15 @@ double depth_of_cell(const cv::Mat& depth_m) {
       ++count;
     }
   }
-  if (2 * count < depth_m.rows * depth_m.cols || farthest_m - nearest_m > kMaxJump * farthest_m)
+  if (2 * count < depth_m.rows * depth_m.cols ||
+      farthest_m - nearest_m > max_step_ratio * farthest_m)
     return 0.0;
   return count / sum;
 }
 
 }  // namespace
 
-Surfaces::Surfaces(const cv::Mat& depth_m, const core::Camera& camera)
+Surfaces::Surfaces(const cv::Mat& depth_m, const core::Camera& camera, double max_step_ratio)
     : camera_(camera),
       num_columns_(depth_m.cols / kStep_px),
       num_rows_(depth_m.rows / kStep_px),
@@ -122,7 +112,7 @@ Surfaces::Surfaces(const cv::Mat& depth_m, const core::Camera& camera)
   for (int row = 0; row < num_rows_; ++row) {
     for (int column = 0; column < num_columns_; ++column) {
       const cv::Rect cell(column * kStep_px, row * kStep_px, kStep_px, kStep_px);
-      const double z = depth_of_cell(depth_m(cell));
+      const double z = depth_of_cell(depth_m(cell), max_step_ratio);
       if (z == 0.0) continue;
       constexpr double kMiddle_px = 0.5 * (kStep_px - 1);
       const Eigen::Vector3d ray =
@@ -130,10 +120,10 @@ Surfaces::Surfaces(const cv::Mat& depth_m, const core::Camera& camera)
       patches_[static_cast<std::size_t>(row * num_columns_ + column)].point = ray * (z / ray.z());
     }
   }
-  add_normals();
+  add_normals(max_step_ratio);
 }
 
-void Surfaces::add_normals() {
+void Surfaces::add_normals(double max_step_ratio) {
   const auto point = [&](int row, int column) -> const Eigen::Vector3d& {
     return patches_[static_cast<std::size_t>(row * num_columns_ + column)].point;
   };
@@ -146,7 +136,8 @@ void Surfaces::add_normals() {
       for (int dy = -1; dy <= 1 && is_smooth; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
           const Eigen::Vector3d& beside = point(row + dy, column + dx);
-          is_smooth = is_smooth && beside.z() > 0.0 && std::abs(beside.z() - z) < kMaxJump * z;
+          is_smooth =
+              is_smooth && beside.z() > 0.0 && std::abs(beside.z() - z) < max_step_ratio * z;
           right += dx * beside;
           down += dy * beside;
         }
@@ -169,26 +160,30 @@ const Surfaces::Patch* Surfaces::at(const Eigen::Vector3d& point_in_camera) cons
 }
 
 std::optional<Alignment> align(const Surfaces& earlier, const Surfaces& later,
-                               const core::Rigid3& guessed_earlier_from_later, double min_share) {
+                               const core::Rigid3& guessed_earlier_from_later,
+                               const DepthAlignmentConfig& config) {
   core::Rigid3 pose = guessed_earlier_from_later;
-  const int min_patches = static_cast<int>(later.patches().size() / kMinPart);
-  for (int i = 0; i < kIterations; ++i) {
-    const double tukey = std::max(kTukey, kFirstTukey * std::pow(0.7, i));
-    const Equations sum = linearise(earlier, later, pose, tukey);
+  const int min_patches =
+      static_cast<int>(config.min_patch_ratio * static_cast<double>(later.patches().size()));
+  for (int i = 0; i < config.iterations; ++i) {
+    const double tukey = std::max(config.tukey, config.first_tukey * std::pow(0.7, i));
+    const Equations sum = linearise(earlier, later, pose, tukey, config);
     if (sum.num_inliers < min_patches) return std::nullopt;
     core::Matrix6d damped = sum.hessian;
     damped.diagonal().array() += 1e-6 * damped.diagonal().array().maxCoeff();
     const core::Vector6d step = damped.ldlt().solve(-sum.gradient);
     if (!step.allFinite()) return std::nullopt;
     pose = optimize::retract(pose, step);
-    if (tukey == kTukey && step.norm() < kConverged) break;
+    if (tukey == config.tukey && step.norm() < kConverged) break;
   }
-  const Equations sum = linearise(earlier, later, pose, kTukey);
+  const Equations sum = linearise(earlier, later, pose, config.tukey, config);
   Alignment found{pose, {}, static_cast<double>(sum.num_inliers) / std::max(sum.num_asked, 1)};
-  if (sum.num_inliers < min_patches || found.share_of_inliers < min_share || !is_held(sum))
+  if (sum.num_inliers < min_patches || found.share_of_inliers < config.min_agreement ||
+      !is_held(sum, config.min_eigenvalue))
     return std::nullopt;
-  found.covariance = kAlike * kAlike * sum.hessian.llt().solve(core::Matrix6d::Identity());
-  if (!found.covariance.allFinite() || !is_sure(found.covariance)) return std::nullopt;
+  found.covariance =
+      config.correlation * config.correlation * sum.hessian.llt().solve(core::Matrix6d::Identity());
+  if (!found.covariance.allFinite() || !is_sure(found.covariance, config)) return std::nullopt;
   return found;
 }
 

@@ -7,6 +7,7 @@
 
 #include <samewhere/core/rig.hpp>
 #include <samewhere/core/rigid3.hpp>
+#include <samewhere/track/config.hpp>
 
 namespace samewhere::track {
 
@@ -15,8 +16,9 @@ namespace samewhere::track {
 class Surfaces {
  public:
   // depth_m: rows x columns of the camera's picture, 32-bit float, metres along the optical axis,
-  // 0 = unknown.
-  Surfaces(const cv::Mat& depth_m, const core::Camera& camera);
+  // 0 = unknown. Depths that differ by a larger share than max_step_ratio are two surfaces.
+  Surfaces(const cv::Mat& depth_m, const core::Camera& camera,
+           double max_step_ratio = DepthAlignmentConfig{}.max_step_ratio);
 
   struct Patch {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();   // in the camera's frame, metres; z = 0: none
@@ -28,7 +30,7 @@ class Surfaces {
   const Patch* at(const Eigen::Vector3d& point_in_camera) const;
 
  private:
-  void add_normals();
+  void add_normals(double max_step_ratio);
 
   core::Camera camera_;
   int num_columns_ = 0;
@@ -43,14 +45,13 @@ struct Alignment {
   double share_of_inliers = 0.0;
 };
 
-// How the camera moved between two depth pictures, without a feature: each patch of the later one
-// is put on the plane of the patch of the earlier one that it falls on (point to plane, Chen and
-// Medioni, IVC 1992; projective association, Blais and Levine, PAMI 1995), with Tukey's weights, so
-// that what moves by itself is left out as long as the rest is more. Nothing if that leaves a
-// direction open (one wall, a bare corridor), less than `min_share` agrees, or less than a
-// sixteenth of the picture does.
+// Motion of the camera between two depth images, without features: point to plane (Chen and
+// Medioni, IVC 1992) with projective association (Blais and Levine, PAMI 1995) and Tukey weights,
+// so that moving objects are outliers while they are the minority. Nothing if a direction is
+// undetermined (one wall, a bare corridor), or if fewer patches agree than `config` asks for.
 std::optional<Alignment> align(const Surfaces& earlier, const Surfaces& later,
-                               const core::Rigid3& guessed_earlier_from_later, double min_share);
+                               const core::Rigid3& guessed_earlier_from_later,
+                               const DepthAlignmentConfig& config);
 
 // Whether two poses differ by more than a step that features refine: 5 cm or 0.03 rad.
 bool are_apart(const core::Rigid3& a, const core::Rigid3& b);

@@ -17,7 +17,7 @@ const core::PinholeRadtan kCamera{.width_px = 640,
                                   .cx_px = 319.5,
                                   .cy_px = 239.5,
                                   .k1 = 0.05};
-constexpr double kMinShare = 0.9;
+constexpr DepthAlignmentConfig kConfig;
 
 // n . x = distance_m
 struct Plane {
@@ -55,7 +55,7 @@ core::Rigid3 small_step() {
 TEST(DepthAlignment, ABareCornerTellsHowTheCameraMoved) {
   const core::Rigid3 step = small_step();
   const auto found = align({depth_of(kCorner, {}), kCamera}, {depth_of(kCorner, step), kCamera},
-                           core::Rigid3{}, kMinShare);
+                           core::Rigid3{}, kConfig);
   ASSERT_TRUE(found);
   const core::Rigid3 off = inverse(step) * found->earlier_from_later;
   EXPECT_LT(off.translation.norm(), 0.003);
@@ -68,7 +68,7 @@ TEST(DepthAlignment, OneWallOrACorridorLeavesTheWayAlongItOpen) {
   const std::vector<Plane> corridor = {kCorner[0], {{1.0, 0.0, 0.0}, 0.9}, {{-1.0, 0.0, 0.0}, 0.9}};
   for (const auto& planes : {wall, corridor}) {
     const cv::Mat depth_m = depth_of(planes, {});
-    EXPECT_FALSE(align({depth_m, kCamera}, {depth_m, kCamera}, core::Rigid3{}, kMinShare));
+    EXPECT_FALSE(align({depth_m, kCamera}, {depth_m, kCamera}, core::Rigid3{}, kConfig));
   }
 }
 
@@ -100,13 +100,12 @@ TEST(DepthAlignment, NoiseIsNoStructure) {
     for (const auto& planes : {wall, corridor}) {
       const Surfaces earlier(noisy(depth_of(planes, {}), ++seed), kCamera);
       const Surfaces later(noisy(depth_of(planes, aside), ++seed), kCamera);
-      EXPECT_FALSE(align(earlier, later, core::Rigid3{}, kMinShare)) << distance_m << " m";
+      EXPECT_FALSE(align(earlier, later, core::Rigid3{}, kConfig)) << distance_m << " m";
     }
   }
   const core::Rigid3 step = small_step();
-  const auto found =
-      align({noisy(depth_of(kCorner, {}), 20), kCamera},
-            {noisy(depth_of(kCorner, step), 21), kCamera}, core::Rigid3{}, kMinShare);
+  const auto found = align({noisy(depth_of(kCorner, {}), 20), kCamera},
+                           {noisy(depth_of(kCorner, step), 21), kCamera}, core::Rigid3{}, kConfig);
   ASSERT_TRUE(found) << "a corner is one with noise, too";
   EXPECT_LT((inverse(step) * found->earlier_from_later).translation.norm(), 0.005);
 }
@@ -121,17 +120,19 @@ TEST(DepthAlignment, WhatMovesByItselfIsLeftOut) {
   const core::Rigid3 step = small_step();
   const Surfaces earlier(with_board(depth_of(kCorner, {}), 200, 120), kCamera);
   const Surfaces later(with_board(depth_of(kCorner, step), 250, 120), kCamera);
-  const auto found = align(earlier, later, core::Rigid3{}, 0.5);
+  const auto found =
+      align(earlier, later, core::Rigid3{}, DepthAlignmentConfig{.min_agreement = 0.5});
   ASSERT_TRUE(found);
   EXPECT_LT((inverse(step) * found->earlier_from_later).translation.norm(), 0.01);
-  EXPECT_FALSE(align(earlier, later, core::Rigid3{}, 0.999)) << "not all agrees";
+  EXPECT_FALSE(align(earlier, later, core::Rigid3{}, DepthAlignmentConfig{.min_agreement = 0.999}))
+      << "not all agrees";
 }
 
 TEST(DepthAlignment, WithoutDepthThereIsNone) {
   const Surfaces unknown(cv::Mat::zeros(kCamera.height_px, kCamera.width_px, CV_32F), kCamera);
   const Surfaces corner(depth_of(kCorner, {}), kCamera);
-  EXPECT_FALSE(align(corner, unknown, core::Rigid3{}, 0.0));
-  EXPECT_FALSE(align(unknown, corner, core::Rigid3{}, 0.0));
+  EXPECT_FALSE(align(corner, unknown, core::Rigid3{}, DepthAlignmentConfig{.min_agreement = 0.0}));
+  EXPECT_FALSE(align(unknown, corner, core::Rigid3{}, DepthAlignmentConfig{.min_agreement = 0.0}));
 }
 
 // By drawing errors of the alignment and looking where they put the later camera.

@@ -8,9 +8,6 @@ namespace samewhere::track {
 namespace {
 
 constexpr int kCell_px = 8;
-// errors of depth, of the pose, and of a point at the edge of what it belongs to
-constexpr double kMargin_m = 0.15;
-constexpr double kMarginPerMetre = 0.1;
 
 // 0: too much is unknown, so that something nearer may hide there.
 float nearest_in(const cv::Mat& depth_m, const cv::Rect& cell) {
@@ -32,8 +29,11 @@ float nearest_in(const cv::Mat& depth_m, const cv::Rect& cell) {
 
 }  // namespace
 
-NearestSurface::NearestSurface(const cv::Mat& depth_m, const core::Camera& camera)
-    : camera_(camera), nearest_m_(depth_m.rows / kCell_px, depth_m.cols / kCell_px, CV_32F) {
+NearestSurface::NearestSurface(const cv::Mat& depth_m, const core::Camera& camera,
+                               const FreeSpaceConfig& config)
+    : camera_(camera),
+      config_(config),
+      nearest_m_(depth_m.rows / kCell_px, depth_m.cols / kCell_px, CV_32F) {
   for (int y = 0; y < nearest_m_.rows; ++y) {
     for (int x = 0; x < nearest_m_.cols; ++x)
       nearest_m_.at<float>(y, x) =
@@ -48,7 +48,7 @@ bool NearestSurface::sees_through(const Eigen::Vector3d& point_in_camera) const 
   const int row = static_cast<int>(std::floor(pixel->y() / kCell_px));
   if (row < 1 || column < 1 || row + 1 >= nearest_m_.rows || column + 1 >= nearest_m_.cols)
     return false;
-  const double behind_m = point_in_camera.z() * (1.0 + kMarginPerMetre) + kMargin_m;
+  const double behind_m = point_in_camera.z() * (1.0 + config_.margin_per_metre) + config_.margin_m;
   for (int y = row - 1; y <= row + 1; ++y) {
     for (int x = column - 1; x <= column + 1; ++x) {
       if (nearest_m_.at<float>(y, x) < behind_m) return false;

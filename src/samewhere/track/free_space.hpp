@@ -7,6 +7,7 @@
 
 #include <samewhere/core/rig.hpp>
 #include <samewhere/core/rigid3.hpp>
+#include <samewhere/track/config.hpp>
 
 namespace samewhere::track {
 
@@ -15,7 +16,8 @@ class NearestSurface {
  public:
   // depth_m: rows x columns of the camera's picture, 32-bit float, metres along the optical axis,
   // 0 = unknown.
-  NearestSurface(const cv::Mat& depth_m, const core::Camera& camera);
+  NearestSurface(const cv::Mat& depth_m, const core::Camera& camera,
+                 const FreeSpaceConfig& config = {});
 
   // Whether the picture saw something well behind the point (in its camera's frame, metres): then
   // nothing was there when it was taken. Not where it shows nothing, or something as near in a cell
@@ -24,7 +26,8 @@ class NearestSurface {
 
  private:
   core::Camera camera_;
-  cv::Mat nearest_m_;  // a cell each; 0: unknown
+  FreeSpaceConfig config_;  // margins: errors of depth, of the pose, and at the edge of an object
+  cv::Mat nearest_m_;       // a cell each; 0: unknown
 };
 
 }  // namespace samewhere::track

@@ -36,7 +36,7 @@ double squared_px(const Eigen::Vector3d& point, const Eigen::Vector3d& bearing, 
 }
 
 Explained explain(const RayPairs& pairs, const std::vector<int>& candidates,
-                  const Rigid3& second_from_first, const StartConfig& config) {
+                  const Rigid3& second_from_first, const InitializationConfig& config) {
   const double max_squared_px = config.max_error_px * config.max_error_px;
   Explained explained;
   for (const int i : candidates) {
@@ -62,7 +62,7 @@ struct BestMotion {
 };
 
 BestMotion best_motion(const RayPairs& pairs, const TwoViewModel& model,
-                       const StartConfig& config) {
+                       const InitializationConfig& config) {
   BestMotion best;
   for (const auto& motion : model.motions) {
     Explained explained = explain(pairs, model.inliers, motion, config);
@@ -80,7 +80,7 @@ BestMotion best_motion(const RayPairs& pairs, const TwoViewModel& model,
 
 // The best motion, refined on what it explains.
 void refine(BestMotion& best, const RayPairs& pairs, const TwoViewModel& model,
-            const StartConfig& config) {
+            const InitializationConfig& config) {
   if (static_cast<int>(best.explained.pairs.size()) < config.min_points) return;
   best.second_from_first =
       refine_motion(subset(pairs, best.explained.pairs), best.second_from_first);
@@ -89,7 +89,7 @@ void refine(BestMotion& best, const RayPairs& pairs, const TwoViewModel& model,
 
 // The points that have parallax enough, at a median depth of 1.
 Start make_start(const BestMotion& best, const std::vector<Match>& matches, bool is_planar,
-                 const StartConfig& config) {
+                 const InitializationConfig& config) {
   Start start;
   start.is_planar = is_planar;
   const Explained& explained = best.explained;
@@ -114,7 +114,7 @@ constexpr double degrees(double angle_rad) { return angle_rad * 180.0 / std::num
 
 // Why a motion is no start; nothing: it is one.
 std::optional<NoStart> refusal_of(const Start& start, const BestMotion& best,
-                                  const StartConfig& config) {
+                                  const InitializationConfig& config) {
   const std::size_t num_explained = best.explained.pairs.size();
   if (start.median_parallax_rad < config.min_parallax_rad) {
     return NoStart{
@@ -123,7 +123,7 @@ std::optional<NoStart> refusal_of(const Start& start, const BestMotion& best,
                     degrees(start.median_parallax_rad), degrees(config.min_parallax_rad))};
   }
   if (static_cast<double>(best.num_explained_by_second) >
-      config.max_rival_ratio * static_cast<double>(num_explained)) {
+      config.max_competing_ratio * static_cast<double>(num_explained)) {
     return NoStart{StartRefusal::kAmbiguous, 0,
                    fmt::format("another motion explains {} of the matches, the best {}",
                                best.num_explained_by_second, num_explained)};
@@ -162,7 +162,7 @@ Result<Start, NoStart> try_start(const View& first, const View& second,
                                  const StartSettings& settings) {
   core::require(first.rig->is_calibrated() && second.rig->is_calibrated(),
                 "only calibrated views start a map");
-  const StartConfig& config = settings.start;
+  const InitializationConfig& config = settings.start;
   const auto matches =
       match_pair(first.features->descriptors, second.features->descriptors, settings.features);
   const auto num_matches = static_cast<int>(matches.size());

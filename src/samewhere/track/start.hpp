@@ -27,7 +27,7 @@ struct Start {
 };
 
 struct StartSettings {
-  StartConfig start;
+  InitializationConfig start;
   DriftConfig drift;
   features::Config features;
   optimize::Config optimize;

@@ -56,7 +56,7 @@ struct ModelScores {
   double epipolar = 0.0;
 
   double homography_ratio() const { return homography / (homography + epipolar); }
-  bool prefers_homography(const StartConfig& config) const {
+  bool prefers_homography(const InitializationConfig& config) const {
     return homography > config.min_homography_ratio * (homography + epipolar);
   }
 };
@@ -80,20 +80,20 @@ TwoViewModel general_model(const Eigen::Matrix3d& essential, const std::vector<i
   return {{motions.begin(), motions.end()}, inliers, false};
 }
 
-geometry::RansacOptions ransac_options(const StartConfig& config) {
+geometry::RansacOptions ransac_options(const InitializationConfig& config) {
   return {.max_error_px = config.max_error_px,
           .max_iterations = config.ransac_iterations,
           .min_inliers = config.min_points};
 }
 
-NoStart no_model(const RayPairs& pairs, const StartConfig& config) {
+NoStart no_model(const RayPairs& pairs, const InitializationConfig& config) {
   return {StartRefusal::kFewMatches, pairs.size(),
           fmt::format("of {} matches fewer than {} agree with any motion", pairs.size(),
                       config.min_points)};
 }
 
 Result<TwoViewModel, NoStart> homography_or_essential(const RayPairs& pairs,
-                                                      const StartConfig& config,
+                                                      const InitializationConfig& config,
                                                       core::Random& random) {
   const auto homography = estimate_homography(pairs, ransac_options(config), random);
   const auto essential = estimate_essential(pairs, ransac_options(config), random);
@@ -106,7 +106,8 @@ Result<TwoViewModel, NoStart> homography_or_essential(const RayPairs& pairs,
 }
 
 Result<TwoViewModel, NoStart> fundamental(const MatchedViews& views, const RayPairs& pairs,
-                                          const StartConfig& config, core::Random& random) {
+                                          const InitializationConfig& config,
+                                          core::Random& random) {
   const auto found = estimate_fundamental(pixel_pairs(views), ransac_options(config), random);
   if (!found) return refuse(no_model(pairs, config));
   const Eigen::Matrix3d essential = geometry::essential_from_fundamental(
@@ -141,7 +142,8 @@ geometry::RayPairs ray_pairs(const MatchedViews& views) {
 
 Result<TwoViewModel, NoStart> estimate_model(const MatchedViews& views,
                                              const geometry::RayPairs& pairs,
-                                             const StartConfig& config, core::Random& random) {
+                                             const InitializationConfig& config,
+                                             core::Random& random) {
   return config.model == StartModel::kFundamental ? fundamental(views, pairs, config, random)
                                                   : homography_or_essential(pairs, config, random);
 }

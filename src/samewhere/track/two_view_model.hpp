@@ -53,6 +53,7 @@ struct TwoViewModel {
 // Refused as well (kFewMatches): fewer than config.min_points agree with any model.
 Result<TwoViewModel, NoStart> estimate_model(const MatchedViews& views,
                                              const geometry::RayPairs& pairs,
-                                             const StartConfig& config, core::Random& random);
+                                             const InitializationConfig& config,
+                                             core::Random& random);
 
 }  // namespace samewhere::track

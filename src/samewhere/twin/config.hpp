@@ -12,11 +12,12 @@ struct Config {
 };
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
-  visit("ideal_depth", config.ideal_depth, {.help = "exact depth at every pixel, no sensor model"});
+  visit("ideal_depth", config.ideal_depth,
+        {.help = "exact depth at every pixel, without a sensor model"});
   visit("num_frames", config.num_frames,
-        {.help = "render only the first frames of the walk, 0 = all", .min = 0});
+        {.help = "render the first frames of the walk only; 0: all", .min = 0});
   visit("num_workers", config.num_workers,
-        {.help = "threads that render, 0 = one per processor; the frames are the same",
+        {.help = "rendering threads, 0: one per processor; the frames are identical",
          .min = 0,
          .max = 64});
 }

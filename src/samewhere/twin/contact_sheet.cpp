@@ -55,18 +55,18 @@ double liveliness(const cv::Mat& picture) {
 }
 
 // At most 24 pairs, evenly spread, of those that are nearly as alike as the best.
-std::vector<Impostor> nearly_best_pairs(const Walkthrough& walk) {
+std::vector<AliasedPair> nearly_best_pairs(const Walkthrough& walk) {
   constexpr double kNearlyBest = 0.9;
   constexpr std::size_t kMostPairs = 24;
-  std::vector<Impostor> pairs = watched_truth(walk).impostors;
+  std::vector<AliasedPair> pairs = watched_truth(walk).aliased_pairs;
   double best = 0.0;
   for (const auto& pair : pairs) best = std::max(best, pair.alike);
-  std::erase_if(pairs, [&](const Impostor& pair) { return pair.alike < kNearlyBest * best; });
+  std::erase_if(pairs, [&](const AliasedPair& pair) { return pair.alike < kNearlyBest * best; });
   if (pairs.empty()) {
     throw core::InputError("twin:" + walk.spec().preset +
                            ": no place of this building has a twin that the camera sees");
   }
-  std::vector<Impostor> spread;
+  std::vector<AliasedPair> spread;
   for (std::size_t i = 0; i < pairs.size(); i += 1 + pairs.size() / kMostPairs) {
     spread.push_back(pairs[i]);
   }
@@ -74,8 +74,8 @@ std::vector<Impostor> nearly_best_pairs(const Walkthrough& walk) {
 }
 
 // One of them that shows more than a bare wall.
-Impostor telling_pair(const Walkthrough& walk, const Config& config) {
-  const std::vector<Impostor> pairs = nearly_best_pairs(walk);
+AliasedPair telling_pair(const Walkthrough& walk, const Config& config) {
+  const std::vector<AliasedPair> pairs = nearly_best_pairs(walk);
   std::vector<int> frames;
   for (const auto& pair : pairs) frames.push_back(pair.match);
   std::vector<double> found;
@@ -103,7 +103,7 @@ cv::Mat contact_sheet(const Walkthrough& walk, const Config& config) {
 cv::Mat similarity_sheet(const Spec& spec, const Config& config) {
   Spec varied = spec;
   varied.similarity = 1.0;
-  const Impostor pair = telling_pair(Walkthrough(varied, config), config);
+  const AliasedPair pair = telling_pair(Walkthrough(varied, config), config);
   cv::Mat sheet = empty_sheet(2);
   int column = 0;
   for (const double similarity : {0.0, 0.5, 0.9, 1.0}) {

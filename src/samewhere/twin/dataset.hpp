@@ -24,10 +24,10 @@ using MakeTables = std::function<SideTables()>;
 // bears the final name is whole; after an error or an interrupt nothing is left. The name is
 // claimed before the source is asked for anything. Beside the format's own files stand, where
 // `tables` are given: frames.csv (frame, stamp_s, visit, room, floor), loops.csv (query, match,
-// overlap, confirmable, object), impostors.csv (query, match, alike), overlap.pgm unless the walk
-// is long, wheels.csv (stamp_s, forward_m, turned_rad) if a robot walked; and same_place.pgm where
-// the source knows its places (0 different, 1 same, 2 near). Throws InputError if the folder is
-// there already or cannot be written, core::Interrupted after Ctrl-C, and whatever source.next()
+// overlap, confirmable, object), aliased_pairs.csv (query, match, alike), overlap.pgm unless the
+// walk is long, wheels.csv (stamp_s, forward_m, turned_rad) if a robot walked; and same_place.pgm
+// where the source knows its places (0 different, 1 same, 2 near). Throws InputError if the folder
+// is there already or cannot be written, core::Interrupted after Ctrl-C, and whatever source.next()
 // and tables() throw.
 
 // TUM RGB-D (Sturm et al. 2012): rgb/, depth/ in units of 1/5000 m, rgb.txt, depth.txt,

@@ -54,9 +54,9 @@ std::string loops_csv(const std::vector<TrueLoop>& loops) {
   return text;
 }
 
-std::string impostors_csv(const std::vector<Impostor>& impostors) {
+std::string aliased_pairs_csv(const std::vector<AliasedPair>& aliased_pairs) {
   std::string text = "query,match,alike\n";
-  for (const auto& pair : impostors) {
+  for (const auto& pair : aliased_pairs) {
     fmt::format_to(std::back_inserter(text), "{},{},{:.4f}\n", pair.query, pair.match, pair.alike);
   }
   return text;
@@ -125,7 +125,7 @@ void write_tables(const PartialFolder& out, const std::vector<double>& stamps_s,
   core::require(truth.frames.size() == stamps_s.size(), "there is one row of truth per frame");
   out.write("frames.csv", frames_csv(truth.frames, stamps_s));
   out.write("loops.csv", loops_csv(truth.loops));
-  out.write("impostors.csv", impostors_csv(truth.impostors));
+  out.write("aliased_pairs.csv", aliased_pairs_csv(truth.aliased_pairs));
   if (!truth.overlap.empty()) out.write("overlap.pgm", pgm(truth.overlap, stamps_s.size(), 255));
   if (!tables.wheels.empty()) out.write("wheels.csv", wheels_csv(tables.wheels));
 }

@@ -110,7 +110,7 @@ TEST_F(Dataset, TruthIsWrittenAsTables) {
             "1,2.066666667,1,\"a \"\"lab\"\", say\",-1\n");
   EXPECT_EQ(core::read_file(target() / "loops.csv"),
             "query,match,overlap,confirmable,object\n1,0,0.7500,1,door 12\n1,0,0.4000,0,\n");
-  EXPECT_EQ(core::read_file(target() / "impostors.csv"), "query,match,alike\n");
+  EXPECT_EQ(core::read_file(target() / "aliased_pairs.csv"), "query,match,alike\n");
   EXPECT_EQ(core::read_file(target() / "wheels.csv"),
             "stamp_s,forward_m,turned_rad\n0.020000000,0.010000000,-0.001000000\n");
   EXPECT_EQ(core::read_file(target() / "overlap.pgm"), "P5\n2 2\n255\n\xff\x0a\x0d\xff");

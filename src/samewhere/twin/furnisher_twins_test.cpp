@@ -217,7 +217,7 @@ Rectangle put_up(std::uint64_t common_seed, std::uint64_t own_seed, Finish finis
   return {};
 }
 
-// Twins whose design is one must look alike to the judge of impostors, others not.
+// Twins whose design is one must give aliased pairs, others not.
 template <class Add>
 void expect_designs_are_told_apart(Finish finish, const Add& add) {
   int num_alike = 0;
@@ -238,13 +238,13 @@ void expect_designs_are_told_apart(Finish finish, const Add& add) {
   EXPECT_GT(num_unlike, 0);
 }
 
-TEST(Twins, UnderUnlikeCeilingsAreNoImpostors) {
+TEST(Twins, UnderUnlikeCeilingsAreNoAliasedPairs) {
   expect_designs_are_told_apart(Finish::kCeiling, [](Furnisher& f) {
     f.add_ceiling({-4.0F, -2.0F}, {4.0F, 2.0F}, 2.6F, CeilingFinish::kTiles);
   });
 }
 
-TEST(Twins, WithUnlikeBlindsAreNoImpostors) {
+TEST(Twins, WithUnlikeBlindsAreNoAliasedPairs) {
   expect_designs_are_told_apart(Finish::kBlinds, [](Furnisher& f) {
     f.add_window({kWall, 3.0F}, Daylight::kBlinds);
   });

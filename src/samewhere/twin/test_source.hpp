@@ -35,7 +35,7 @@ class TestSource : public core::Source {
                                  .velocity_m_s = random_vector(random),
                                  .gyroscope_bias_rad_s = 1e-3 * random_vector(random),
                                  .accelerometer_bias_m_s2 = 0.1 * random_vector(random)});
-      if (i > 1) truth_.impostors.push_back({i, i - 2});
+      if (i > 1) truth_.aliased_pairs.push_back({i, i - 2});
     }
     truth_.places = core::PlaceTruthMatrix{num_frames, {}};
     for (int i = 0; i < num_frames * num_frames; ++i) {
@@ -71,9 +71,9 @@ class TestSource : public core::Source {
   core::Truth truth() const override { return truth_; }
 
   // As a table beside the recording has it.
-  std::vector<Impostor> impostors() const {
-    std::vector<Impostor> pairs;
-    for (const auto& pair : truth_.impostors) pairs.push_back({pair.query, pair.match, 0.5});
+  std::vector<AliasedPair> aliased_pairs() const {
+    std::vector<AliasedPair> pairs;
+    for (const auto& pair : truth_.aliased_pairs) pairs.push_back({pair.query, pair.match, 0.5});
     return pairs;
   }
 

@@ -201,7 +201,7 @@ void write_pair(const core::FramePair& pair, const Shares& overlap, core::PlaceT
   truth.places->values[match * n + query] = place;
 }
 
-// Writes down whether a pair is a loop or an impostor; `kin` are those of the query, by visit.
+// Writes down whether a pair is a loop or an aliased pair; `kin` are those of the query, by visit.
 void register_pair(const Judge& judge, const Judged& query, const Judged& match,
                    const std::vector<std::vector<Kin>>& kin, WalkTruth& truth) {
   const Shares overlap = judge.overlap(query, match);
@@ -213,7 +213,7 @@ void register_pair(const Judge& judge, const Judged& query, const Judged& match,
   if (place == core::PlaceTruth::kDifferent && match.where.visit != kDark) {
     const double alike =
         judge.alike(query, match, kin[static_cast<std::size_t>(match.where.visit)]);
-    if (alike > 0.0) truth.impostors.push_back({query.frame, match.frame, alike});
+    if (alike > 0.0) truth.aliased_pairs.push_back({query.frame, match.frame, alike});
   }
 }
 
@@ -283,8 +283,8 @@ core::Truth core_truth(core::Trajectory poses, const WalkTruth& truth) {
   core::Truth result{.trajectory = std::move(poses), .places = truth.places};
   if (truth.stride_frames != 1) return result;
   result.revisits = revisits_of(truth.loops);
-  for (const Impostor& impostor : truth.impostors) {
-    result.impostors.push_back({impostor.query, impostor.match});
+  for (const AliasedPair& pair : truth.aliased_pairs) {
+    result.aliased_pairs.push_back({pair.query, pair.match});
   }
   return result;
 }

@@ -41,7 +41,7 @@ struct TrueLoop {
 
 // Two frames of different places (pr-v2) that look alike by construction: with the camera moved
 // from its unit to another one of the same kind, the query would be the same place as the match.
-struct Impostor {
+struct AliasedPair {
   int query = 0;  // frames of the walk; query > match
   int match = 0;
   double alike = 0.0;  // share of the one's surface that the other sees alike, smaller of both ways
@@ -54,9 +54,9 @@ struct WalkTruth {
   std::vector<std::uint8_t> overlap;
   std::optional<core::PlaceTruthMatrix> places;  // nothing if the walk is long
   std::vector<TrueLoop> loops;                   // ascend by query, then match
-  std::vector<Impostor> impostors;               // ascend by query, then match
-  // Of every how many frames loops and impostors tell: 1, or 15 in a long walk. Numbers of frames
-  // are always those of the whole walk.
+  std::vector<AliasedPair> aliased_pairs;        // ascend by query, then match
+  // Of every how many frames loops and aliased pairs tell: 1, or 15 in a long walk. Numbers of
+  // frames are always those of the whole walk.
   int stride_frames = 1;
 };
 
@@ -71,7 +71,7 @@ using WatchJudging = std::function<void(int num_judged, int num_pairs)>;
 // overlap below 0.05 both ways; near: the rest. A dark frame shows no place: it is different from
 // all, itself included; its room is looked up in the last visit before it. All visits must number
 // their units alike. Of a walk of more than kMaxFramesOfMatrix frames there are no matrices, and
-// loops and impostors are sought among every 15th frame only.
+// loops and aliased pairs are sought among every 15th frame only.
 WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera,
                    const WatchJudging& watch = nullptr);
 
@@ -79,8 +79,8 @@ WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const cor
 // confirmable: ascending. `loops` as in WalkTruth, of every frame.
 std::vector<core::FrameSpan> revisits_of(const std::vector<TrueLoop>& loops);
 
-// What the rest of the system compares with. Without impostors and revisits if the walk is long: to
-// name a part of them would make others look like none.
+// What the rest of the system compares with. Without aliased pairs and revisits if the walk is
+// long: to name a part of them would make others look like none.
 core::Truth core_truth(core::Trajectory poses, const WalkTruth& truth);
 
 }  // namespace samewhere::twin

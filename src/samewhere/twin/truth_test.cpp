@@ -37,51 +37,51 @@ Walk walk_through_twin_rooms() {
   return walk_of({looking({1.0, 1.2, 1.5}, 0.1), looking({1.1 + kSecondRoom_m, 1.2, 1.5}, 0.1)});
 }
 
-TEST(Impostors, AreTwinRoomsSeenAlike) {
+TEST(AliasedPairs, AreTwinRoomsSeenAlike) {
   const WalkTruth truth = truth_in(test::twin_rooms(0.0F), walk_through_twin_rooms());
   EXPECT_EQ(truth.places->at(1, 0), PlaceTruth::kDifferent);
   EXPECT_TRUE(truth.loops.empty());
-  ASSERT_EQ(truth.impostors.size(), 1U);
-  EXPECT_EQ(truth.impostors[0].query, 1);
-  EXPECT_EQ(truth.impostors[0].match, 0);
-  EXPECT_GT(truth.impostors[0].alike, 0.85);
-  EXPECT_EQ(core_truth({}, truth).impostors, (std::vector<core::FramePair>{{1, 0}}));
+  ASSERT_EQ(truth.aliased_pairs.size(), 1U);
+  EXPECT_EQ(truth.aliased_pairs[0].query, 1);
+  EXPECT_EQ(truth.aliased_pairs[0].match, 0);
+  EXPECT_GT(truth.aliased_pairs[0].alike, 0.85);
+  EXPECT_EQ(core_truth({}, truth).aliased_pairs, (std::vector<core::FramePair>{{1, 0}}));
 }
 
-TEST(Impostors, AreNoneWhereEveryRoomIsDecoratedDifferently) {
-  EXPECT_TRUE(truth_in(test::twin_rooms(1.0F), walk_through_twin_rooms()).impostors.empty());
-  EXPECT_EQ(truth_in(test::twin_rooms(0.5F), walk_through_twin_rooms()).impostors.size(), 1U);
-  EXPECT_TRUE(truth_in(test::twin_rooms(0.51F), walk_through_twin_rooms()).impostors.empty());
+TEST(AliasedPairs, AreNoneWhereEveryRoomIsDecoratedDifferently) {
+  EXPECT_TRUE(truth_in(test::twin_rooms(1.0F), walk_through_twin_rooms()).aliased_pairs.empty());
+  EXPECT_EQ(truth_in(test::twin_rooms(0.5F), walk_through_twin_rooms()).aliased_pairs.size(), 1U);
+  EXPECT_TRUE(truth_in(test::twin_rooms(0.51F), walk_through_twin_rooms()).aliased_pairs.empty());
 
   Building other_kind = test::twin_rooms(0.0F);
   other_kind.units[1].kind = 1;
-  EXPECT_TRUE(truth_in(other_kind, walk_through_twin_rooms()).impostors.empty());
+  EXPECT_TRUE(truth_in(other_kind, walk_through_twin_rooms()).aliased_pairs.empty());
   Building other_walls = test::twin_rooms(0.0F);
   for (std::size_t i = 0; i < 6; ++i) other_walls.rectangles[i].material.pattern_seed += 50;
-  EXPECT_TRUE(truth_in(other_walls, walk_through_twin_rooms()).impostors.empty());
+  EXPECT_TRUE(truth_in(other_walls, walk_through_twin_rooms()).aliased_pairs.empty());
 }
 
-TEST(Impostors, NeedTheSameViewOfTheTwin) {
+TEST(AliasedPairs, NeedTheSameViewOfTheTwin) {
   const auto num_with_second_turned_to = [](double heading_rad) {
     const Walk walk = walk_of(
         {looking({2.0, 1.5, 1.5}, 0.0), looking({2.0 + kSecondRoom_m, 1.5, 1.5}, heading_rad)});
-    return truth_in(test::twin_rooms(0.0F), walk).impostors.size();
+    return truth_in(test::twin_rooms(0.0F), walk).aliased_pairs.size();
   };
   EXPECT_EQ(num_with_second_turned_to(0.3), 1U);
   EXPECT_EQ(num_with_second_turned_to(0.9), 0U) << "more than 45 degrees";
   EXPECT_EQ(num_with_second_turned_to(kPi), 0U);
 }
 
-TEST(Impostors, FollowATwinThatIsTurnedRound) {
+TEST(AliasedPairs, FollowATwinThatIsTurnedRound) {
   Building building;
   test::add_room(building, {}, 0.0F);
   test::add_room(building, test::turned_and_moved(kPi, {10.0, 3.0, 0.0}), 0.0F);
   const core::Rigid3 in_first = looking({1.0, 1.2, 1.5}, 0.2);
   const core::Rigid3 its_twin = building.units[1].world_from_unit * in_first;
-  EXPECT_EQ(truth_in(building, walk_of({in_first, its_twin})).impostors.size(), 1U);
+  EXPECT_EQ(truth_in(building, walk_of({in_first, its_twin})).aliased_pairs.size(), 1U);
   // seen in the same direction of the world, it is the other end of the room
   const core::Rigid3 unturned = looking(its_twin.translation, 0.2);
-  EXPECT_TRUE(truth_in(building, walk_of({in_first, unturned})).impostors.empty());
+  EXPECT_TRUE(truth_in(building, walk_of({in_first, unturned})).aliased_pairs.empty());
 }
 
 // A corridor of bays along x, each 3 m long and a unit of its own, all of one kind.
@@ -102,20 +102,22 @@ Building row_of_bays(int count) {
   return building;
 }
 
-TEST(Impostors, InARowOfBaysAreWhatIsOutOfSight) {
-  const auto impostors_of = [](const core::Rigid3& first, const core::Rigid3& second) {
-    return truth_in(row_of_bays(8), walk_of({first, second})).impostors;
+TEST(AliasedPairs, InARowOfBaysAreWhatIsOutOfSight) {
+  const auto aliased_pairs_of = [](const core::Rigid3& first, const core::Rigid3& second) {
+    return truth_in(row_of_bays(8), walk_of({first, second})).aliased_pairs;
   };
   const core::Rigid3 in_second_bay = looking({5.9, 0.5, 1.3}, 0.5 * kPi);
-  EXPECT_EQ(impostors_of(in_second_bay, looking({17.9, 0.5, 1.3}, 0.5 * kPi)).size(), 1U);
+  EXPECT_EQ(aliased_pairs_of(in_second_bay, looking({17.9, 0.5, 1.3}, 0.5 * kPi)).size(), 1U);
   // from the beginning of a bay to the end of another: the bay after that one is the best kin
-  const auto across_a_border = impostors_of(in_second_bay, looking({12.1, 0.5, 1.3}, 0.5 * kPi));
+  const auto across_a_border =
+      aliased_pairs_of(in_second_bay, looking({12.1, 0.5, 1.3}, 0.5 * kPi));
   ASSERT_EQ(across_a_border.size(), 1U);
   EXPECT_GT(across_a_border[0].alike, 0.8);
   // half a bay off, nothing repeats enough
-  EXPECT_TRUE(impostors_of(in_second_bay, looking({16.4, 0.1, 1.3}, 0.5 * kPi)).empty());
+  EXPECT_TRUE(aliased_pairs_of(in_second_bay, looking({16.4, 0.1, 1.3}, 0.5 * kPi)).empty());
   // the next bay shows some of the same wall: near, not different
-  EXPECT_TRUE(impostors_of(looking({4.0, 0.1, 1.3}, 0.2), looking({7.0, 0.1, 1.3}, 0.2)).empty());
+  EXPECT_TRUE(
+      aliased_pairs_of(looking({4.0, 0.1, 1.3}, 0.2), looking({7.0, 0.1, 1.3}, 0.2)).empty());
 }
 
 Walk twice_after(const core::Rigid3& pose, double seconds) {
@@ -186,7 +188,7 @@ TEST(Frames, OfNoAreaHaveNoUnit) {
   const WalkTruth truth = truth_in(building, walk_through_twin_rooms());
   EXPECT_EQ(truth.frames[1].room, "");
   EXPECT_EQ(truth.frames[1].unit, -1);
-  EXPECT_TRUE(truth.impostors.empty());
+  EXPECT_TRUE(truth.aliased_pairs.empty());
 }
 
 TEST(SecondVisit, IsTheSamePlaceAfterTheDark) {
@@ -213,7 +215,7 @@ TEST(SecondVisit, IsTheSamePlaceAfterTheDark) {
   EXPECT_EQ(truth.loops[0].match, 0);
   EXPECT_FALSE(truth.loops[0].is_confirmable) << "the poster was not there before";
   // the second room looks like the first of either visit; the poster hides little of it
-  EXPECT_EQ(core_truth({}, truth).impostors, (std::vector<core::FramePair>{{3, 0}, {3, 2}}));
+  EXPECT_EQ(core_truth({}, truth).aliased_pairs, (std::vector<core::FramePair>{{3, 0}, {3, 2}}));
 }
 
 std::vector<core::Rigid3> random_poses(core::Random& random, int count) {
@@ -236,7 +238,7 @@ void expect_no_contradiction(const WalkTruth& truth) {
   for (const TrueLoop& loop : truth.loops) {
     ASSERT_EQ(truth.places->at(loop.query, loop.match), PlaceTruth::kSame);
   }
-  for (const Impostor& pair : truth.impostors) {
+  for (const AliasedPair& pair : truth.aliased_pairs) {
     ASSERT_GT(pair.query, pair.match);
     ASSERT_GE(pair.alike, 0.3);
     ASSERT_EQ(truth.places->at(pair.query, pair.match), PlaceTruth::kDifferent);
@@ -258,14 +260,14 @@ TEST(WalkTruth, IsFreeOfContradictionsAndTheSameBackwards) {
     std::reverse(poses.begin(), poses.end());
     const WalkTruth backwards = truth_in(building, walk_of(poses));
     expect_no_contradiction(forwards);
-    EXPECT_GT(forwards.impostors.size(), 20U);
+    EXPECT_GT(forwards.aliased_pairs.size(), 20U);
 
     std::vector<core::FramePair> reversed;
-    for (const Impostor& pair : backwards.impostors) {
+    for (const AliasedPair& pair : backwards.aliased_pairs) {
       reversed.push_back({kNumFrames - 1 - pair.match, kNumFrames - 1 - pair.query});
     }
     std::sort(reversed.begin(), reversed.end());
-    EXPECT_EQ(core_truth({}, forwards).impostors, reversed);
+    EXPECT_EQ(core_truth({}, forwards).aliased_pairs, reversed);
     EXPECT_EQ(core_truth({}, forwards).places->values.size(), std::size_t{kNumFrames} * kNumFrames);
   }
 }
@@ -283,13 +285,13 @@ TEST(WalkTruth, OfALongWalkIsToldForEveryFifteenthFrame) {
   EXPECT_TRUE(truth.overlap.empty());
   EXPECT_FALSE(core_truth({}, truth).places);
   ASSERT_FALSE(truth.loops.empty());
-  ASSERT_FALSE(truth.impostors.empty());
+  ASSERT_FALSE(truth.aliased_pairs.empty());
   for (const TrueLoop& loop : truth.loops) {
     ASSERT_EQ(loop.query % 15, 0);
     ASSERT_EQ(loop.match % 15, 0);
     ASSERT_GE(loop.query - loop.match, 150);
   }
-  for (const Impostor& pair : truth.impostors) {
+  for (const AliasedPair& pair : truth.aliased_pairs) {
     ASSERT_EQ(pair.query % 15, 0);
     ASSERT_GE(pair.query, 500);
     ASSERT_LT(pair.match, 500);

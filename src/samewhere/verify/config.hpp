@@ -16,21 +16,21 @@ struct Config {
   int min_inliers = 40;
   double min_spread_ratio = 0.12;
   bool require_pose = true;
-  double max_disagreement_m = 0.15;
-  double max_disagreement_rad = 0.05;
+  double max_pose_difference_m = 0.15;
+  double max_pose_difference_rad = 0.05;
   double max_error_px = 4.0;
   double refine_radius_px = 6.0;
   int ransac_iterations = 500;
   int min_views = 10;
   int min_inliers_in_sequence = 20;
   int max_view_gap = 3;
-  int wait_views = 20;
+  int max_pending_views = 20;
   double same_view_ratio = 0.15;
-  int look_around_frames = 0;
+  int neighbour_frames = 0;
   double max_odometry_chi_square = 16.81;
-  double max_rival_chi_square = 30.0;
-  double min_rival_gain = 6.0;
-  double max_other_place_ratio = 0.75;
+  double max_competing_chi_square = 30.0;
+  double min_competing_gain = 6.0;
+  double max_competing_place_ratio = 0.75;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
   bool measure_all = false;
@@ -38,101 +38,93 @@ struct Config {
 
 inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
   visit("min_similarity", config.min_similarity,
-        {.help = "descriptors less similar (NCC) are refused", .min = -1.0, .max = 1.0});
+        {.help = "least similarity of the descriptors (NCC)", .min = -1.0, .max = 1.0});
   visit("pause_frames", config.pause_frames,
-        {.help = "frames after a loop in which no other is accepted, nor is a second one of the "
-                 "loop's own view (paper, section on the interval); 0: no limit",
+        {.help = "frames after a loop without another, nor a second loop of the same view "
+                 "(published method); 0: off",
          .min = 0,
          .max = 100000});
   visit("require_geometry", config.require_geometry,
-        {.help = "false: similarity alone decides, as in the paper"});
+        {.help = "false: similarity alone decides, as published"});
   visit("rank_by", config.rank_by,
-        {.help = "what makes a candidate the best of its query",
-         .choices = {"similarity", "inliers"}});
+        {.help = "order of the candidates of one view", .choices = {"similarity", "inliers"}});
   visit("min_matches", config.min_matches,
-        {.help = "fewer feature matches are refused", .min = 7, .max = 100000});
+        {.help = "least feature matches", .min = 7, .max = 100000});
   visit("min_inliers", config.min_inliers,
-        {.help = "fewer geometric inliers are refused", .min = 7, .max = 100000});
+        {.help = "least geometric inliers", .min = 7, .max = 100000});
   visit("min_spread_ratio", config.min_spread_ratio,
-        {.help = "share of the picture's 8 x 8 cells that inliers must cover",
-         .min = 0.0,
-         .max = 1.0});
-  visit(
-      "require_pose", config.require_pose,
-      {.help = "candidates without a relative pose are refused: nothing but their looks speaks for "
-               "them; recognition alone (`loops`) and who is lost do not ask"});
-  visit("max_disagreement_m", config.max_disagreement_m,
+        {.help = "least share of the 8 x 8 image cells with inliers", .min = 0.0, .max = 1.0});
+  visit("require_pose", config.require_pose,
         {.help =
-             "the pose from the query's depth and that from the match's may differ by this, metres",
+             "candidates without a relative pose are rejected; off in `loops` and relocalization"});
+  visit("max_pose_difference_m", config.max_pose_difference_m,
+        {.help = "pose consistency: largest translation between the poses from the query's and "
+                 "from the match's depth, metres",
          .min = 0.001,
          .max = 100.0});
-  visit("max_disagreement_rad", config.max_disagreement_rad,
-        {.help = "the same, radians", .min = 0.001, .max = 3.2});
+  visit("max_pose_difference_rad", config.max_pose_difference_rad,
+        {.help = "the same for the rotation, radians", .min = 0.001, .max = 3.2});
 }
 
 inline void visit_sequence(Config& config, core::FieldVisitor& visit) {
   visit("min_views", config.min_views,
-        {.help = "recognition alone, where no map and no path travelled can tell: as many views in "
-                 "a row must go on to match; 1: each view speaks for itself",
+        {.help = "`loops`: consecutive views that must match (sequence verification); 1: off",
          .min = 1,
          .max = 1000});
   visit("min_inliers_in_sequence", config.min_inliers_in_sequence,
-        {.help = "each of them with so many geometric inliers", .min = 7, .max = 100000});
+        {.help = "`loops`: least geometric inliers of each of them", .min = 7, .max = 100000});
   visit("max_view_gap", config.max_view_gap,
-        {.help = "a sequence goes on over so many views", .min = 1, .max = 100});
-  visit("wait_views", config.wait_views,
-        {.help = "views after which who still waits is refused", .min = 1, .max = 1000});
+        {.help = "`loops`: largest gap in a sequence, views", .min = 1, .max = 100});
+  visit("max_pending_views", config.max_pending_views,
+        {.help = "`loops`: views after which a pending candidate is rejected",
+         .min = 1,
+         .max = 1000});
   visit(
       "same_view_ratio", config.same_view_ratio,
-      {.help = "a frame that shares so many of its features with the last view is still that view",
+      {.help = "`loops`: a frame with this share of the last view's features is part of that view",
        .min = 0.0,
        .max = 1.0});
-  visit("look_around_frames", config.look_around_frames,
-        {.help = "frames so far beside the best match, then half as far and so on, are asked "
-                 "whether they show more of the same; 0: what search finds is all",
+  visit("neighbour_frames", config.neighbour_frames,
+        {.help = "`loops`: largest offset in frames at which neighbours of the best match are "
+                 "verified, then half of it and so on; 0: off",
          .min = 0,
          .max = 1000});
 }
 
 inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
   visit("max_error_px", config.max_error_px,
-        {.help = "reprojection error of a RANSAC inlier", .min = 0.1, .max = 50.0});
+        {.help = "largest reprojection error of a RANSAC inlier, pixels", .min = 0.1, .max = 50.0});
   visit("refine_radius_px", config.refine_radius_px,
-        {.help = "search radius of the second look, around the projection",
-         .min = 0.5,
-         .max = 100.0});
+        {.help = "search radius of the guided second matching, pixels", .min = 0.5, .max = 100.0});
   visit("ransac_iterations", config.ransac_iterations,
-        {.help = "RANSAC samples at most", .min = 1, .max = 100000});
+        {.help = "largest number of RANSAC samples", .min = 1, .max = 100000});
   visit("max_odometry_chi_square", config.max_odometry_chi_square,
-        {.help = "squared Mahalanobis distance of the correction under the drift model, 6 degrees "
-                 "of freedom",
+        {.help = "odometry gate: largest squared Mahalanobis distance of the loop's correction, 6 "
+                 "degrees of freedom; 16.81: 99 %",
          .min = 1.0,
          .max = 1e9});
-  visit("max_rival_chi_square", config.max_rival_chi_square,
-        {.help = "the same from where the last loop has put the camera, under the drift since then "
-                 "alone: beyond, two places explain the view",
+  visit("max_competing_chi_square", config.max_competing_chi_square,
+        {.help = "competing hypothesis: the same from the pose after the last loop, with the drift "
+                 "since then",
          .min = 1.0,
          .max = 1e9});
-  visit("min_rival_gain", config.min_rival_gain,
-        {.help = "such a candidate is a loop all the same, and those before that contradict it are "
-                 "none, if odometry makes it so much likelier than them: twice the logarithm of "
-                 "the ratio",
+  visit("min_competing_gain", config.min_competing_gain,
+        {.help = "competing hypothesis: least gain in log-likelihood, times two, over the loops "
+                 "that it contradicts",
          .min = 0.0,
          .max = 1e9});
-  visit(
-      "max_other_place_ratio", config.max_other_place_ratio,
-      {.help = "a candidate is ambiguous if another one of the same view has more than so many of "
-               "its inliers, passes all checks, and shows what the map knows to be another place",
-       .min = 0.0,
-       .max = 1e9});
+  visit("max_competing_place_ratio", config.max_competing_place_ratio,
+        {.help = "ambiguous if another place of the same view passes all checks with more than "
+                 "this share of the inliers",
+         .min = 0.0,
+         .max = 1e9});
   visit("loop_sigma_m", config.loop_sigma_m,
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
   visit("loop_sigma_rad", config.loop_sigma_rad,
         {.help = "standard deviation of a loop's rotation, radians", .min = 1e-4, .max = 3.0});
-  visit(
-      "measure_all", config.measure_all,
-      {.help = "geometry is measured of candidates, too, that looks or the pause have refused: for "
-               "`ledger RUN replay`"});
+  visit("measure_all", config.measure_all,
+        {.help = "geometry is measured for all candidates, also of those rejected by similarity or "
+                 "pause: for `ledger RUN replay`"});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {

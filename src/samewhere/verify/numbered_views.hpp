@@ -7,9 +7,9 @@
 #include <samewhere/features/features.hpp>
 #include <samewhere/verify/view_counter.hpp>
 
-namespace samewhere::pipeline {
+namespace samewhere::verify {
 
-// Which view a frame belongs to, and which frame stands for a view.
+// The number of the view that a frame belongs to, and the first frame of a view.
 class NumberedViews {
  public:
   NumberedViews(const features::Config& features, double same_view_ratio)
@@ -23,9 +23,9 @@ class NumberedViews {
   const core::Descriptor* at(int number) const;
 
  private:
-  verify::ViewCounter counter_;
+  ViewCounter counter_;
   std::map<core::FrameId, int> number_of_;
   std::vector<core::Descriptor> first_frames_;
 };
 
-}  // namespace samewhere::pipeline
+}  // namespace samewhere::verify

@@ -4,14 +4,14 @@
 
 #include <Eigen/Cholesky>
 
+#include <samewhere/verify/measure_competing.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
-#include <samewhere/verify/measure_rival.hpp>
 #include <samewhere/verify/odometry_chain.hpp>
 
 namespace samewhere::verify {
 namespace {
 
-// The youngest on the path of odometry that ends with this keyframe.
+// The youngest loop on the odometry chain that ends with this keyframe.
 const scene::LoopEdge* last_loop_before(const scene::MapVersion& map, core::KeyframeId keyframe) {
   while (true) {
     const auto loop =
@@ -23,20 +23,20 @@ const scene::LoopEdge* last_loop_before(const scene::MapVersion& map, core::Keyf
   }
 }
 
-// Where its path of odometry begins.
+// The beginning of its odometry chain.
 core::KeyframeId origin_of(const scene::MapVersion& map, core::KeyframeId keyframe) {
   while (map.at(keyframe).odometry) keyframe = map.at(keyframe).odometry->parent;
   return keyframe;
 }
 
-// Whether the map says anything of where the claim's match is from what the loop joins.
+// Whether the map knows the pose of the claim's match relative to one end of the loop.
 bool is_comparable(const scene::MapVersion& map, const scene::LoopEdge& claim,
                    const scene::LoopEdge& loop) {
   const core::KeyframeId origin = origin_of(map, claim.match);
   return origin == origin_of(map, loop.match) || origin == origin_of(map, loop.query);
 }
 
-// How well a claim goes with a chain of odometry, whose error has a normal distribution.
+// Negative log-likelihood terms of a claim under an odometry chain with normal errors.
 struct Fit {
   double chi2 = 0.0;
   double log_det = 0.0;  // of the covariance
@@ -45,6 +45,8 @@ struct Fit {
 class Odometry {
  public:
   Odometry(const scene::MapVersion& map, const Config& config) : map_(map), config_(config) {}
+  Odometry(const Odometry&) = delete;
+  Odometry& operator=(const Odometry&) = delete;
 
   // The chain leads to the query, from a keyframe that the map places relative to the match.
   Fit fit(const scene::LoopEdge& claim, const OdometryChain& chain) const {
@@ -67,14 +69,15 @@ class Odometry {
   const Config& config_;
 };
 
-// The loops on a claim's path that contradict it, or go with those that do.
+// The loops on a claim's odometry chain that contradict it, or agree with those that do.
 struct Contradiction {
   const scene::LoopEdge* first = nullptr;
-  // Where the youngest loop that goes with the claim has put the camera; none if all contradict it.
+  // Query of the youngest loop that agrees with the claim; none if all contradict it.
   std::optional<core::KeyframeId> base;
 };
 
-// Far enough back, odometry would allow any two loops; so a loop goes with whom it fits better.
+// Far enough back, odometry would allow any two loops; so each loop is assigned to the one that it
+// fits better.
 Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                const Odometry& odometry, const Config& config) {
   std::map<core::KeyframeId, const scene::LoopEdge*> loop_of;
@@ -89,7 +92,7 @@ Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEd
     if (loop == loop_of.end()) continue;
     const double chi2 = odometry.fit(claim, to_claim.chain()).chi2;
     const bool is_with_claim =
-        chi2 <= config.max_rival_chi_square &&
+        chi2 <= config.max_competing_chi_square &&
         (found.first == nullptr || chi2 <= odometry.fit(*found.first, to_first.chain()).chi2);
     if (is_with_claim) {
       found.base = at;
@@ -101,10 +104,10 @@ Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEd
   return found;
 }
 
-// How much likelier odometry, held against none of the loops that contradict the claim, makes it
-// than the first of them. A longer way allows more: that counts against the claim, never for it.
+// Log-likelihood ratio, times two, of the claim over the first loop that contradicts it, under
+// odometry without those loops. The larger covariance of a longer chain never counts for the claim.
 void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, const Config& config,
-                  core::RivalEvidence& rival) {
+                  core::CompetingLoopEvidence& competing) {
   const Odometry odometry(map, config);
   const Contradiction found = contradiction_of(map, claim, odometry, config);
   if (found.first == nullptr || claim.match >= found.first->query) return;
@@ -115,24 +118,26 @@ void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, co
   const auto of_claim = fit_of(claim);
   const auto of_first = fit_of(*found.first);
   if (!of_claim || !of_first) return;
-  rival.first_loop = found.first->cause;
-  rival.gain =
+  competing.first_loop = found.first->cause;
+  competing.gain =
       of_first->chi2 - of_claim->chi2 + std::min(0.0, of_first->log_det - of_claim->log_det);
 }
 
-// Without depth, loops have stretched what odometry measured.
+// Without depth, loops have changed the scale of the odometry edges.
 bool may_compare(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                 const core::RivalEvidence& rival, const Config& config) {
-  return rival.mahalanobis_squared > config.max_rival_chi_square && !is_without_depth(map) &&
+                 const core::CompetingLoopEvidence& competing, const Config& config) {
+  return competing.mahalanobis_squared > config.max_competing_chi_square &&
+         !is_without_depth(map) &&
          measure_odometry(map, claim, {}, config).mahalanobis_squared <=
              config.max_odometry_chi_square;
 }
 
 }  // namespace
 
-std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
-                                                 const scene::LoopEdge& claim,
-                                                 const ScaleErrors& scale, const Config& config) {
+std::optional<core::CompetingLoopEvidence> measure_competing_loop(const scene::MapVersion& map,
+                                                                  const scene::LoopEdge& claim,
+                                                                  const ScaleErrors& scale,
+                                                                  const Config& config) {
   const scene::LoopEdge* loop = last_loop_before(map, claim.query);
   if (loop == nullptr || !is_comparable(map, claim, *loop)) return std::nullopt;
   scene::LoopEdge since_loop = claim;
@@ -140,19 +145,19 @@ std::optional<core::RivalEvidence> measure_rival(const scene::MapVersion& map,
   since_loop.match_from_query = inverse(world_from_body(map, loop->query)) *
                                 world_from_body(map, claim.match) * claim.match_from_query;
   const core::OdometryEvidence found = measure_odometry(map, since_loop, scale, config);
-  core::RivalEvidence rival{.frame = map.at(loop->match).view.frame,
-                            .apart_m = found.correction_m,
-                            .apart_rad = found.correction_rad,
-                            .mahalanobis_squared = found.mahalanobis_squared};
-  if (may_compare(map, claim, rival, config)) measure_gain(map, claim, config, rival);
-  return rival;
+  core::CompetingLoopEvidence competing{.frame = map.at(loop->match).view.frame,
+                                        .apart_m = found.correction_m,
+                                        .apart_rad = found.correction_rad,
+                                        .mahalanobis_squared = found.mahalanobis_squared};
+  if (may_compare(map, claim, competing, config)) measure_gain(map, claim, config, competing);
+  return competing;
 }
 
-std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVersion& map,
-                                                            const scene::LoopEdge& claim,
-                                                            const scene::LoopEdge& other,
-                                                            const ScaleErrors& scale,
-                                                            const Config& config) {
+std::optional<core::CompetingPlaceEvidence> measure_competing_place(const scene::MapVersion& map,
+                                                                    const scene::LoopEdge& claim,
+                                                                    const scene::LoopEdge& other,
+                                                                    const ScaleErrors& scale,
+                                                                    const Config& config) {
   const auto chain = odometry_between(map, other.match, claim.match);
   if (!chain) return std::nullopt;
   const core::Matrix6d of_loop = loop_information(config).inverse();
@@ -169,12 +174,13 @@ std::optional<core::OtherPlaceEvidence> measure_other_place(const scene::MapVers
                    {.creep = scale.creep, .loop = std::sqrt(2.0) * scale.loop});
   const core::Vector6d error = difference(known.a_from_b, rigid_part(other_from_claim));
   const core::Matrix6d covariance = known.covariance + claimed.covariance;
-  if (error.dot(covariance.llt().solve(error)) <= config.max_rival_chi_square) return std::nullopt;
+  if (error.dot(covariance.llt().solve(error)) <= config.max_competing_chi_square)
+    return std::nullopt;
   const core::Rigid3 apart = inverse(world_from_body(map, claim.match) * claim.match_from_query) *
                              (world_from_body(map, other.match) * other.match_from_query);
-  return core::OtherPlaceEvidence{.frame = map.at(other.match).view.frame,
-                                  .apart_m = apart.translation.norm(),
-                                  .apart_rad = core::angle_rad(apart.rotation)};
+  return core::CompetingPlaceEvidence{.frame = map.at(other.match).view.frame,
+                                      .apart_m = apart.translation.norm(),
+                                      .apart_rad = core::angle_rad(apart.rotation)};
 }
 
 }  // namespace samewhere::verify

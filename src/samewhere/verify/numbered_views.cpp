@@ -1,6 +1,6 @@
-#include <samewhere/pipeline/numbered_views.hpp>
+#include <samewhere/verify/numbered_views.hpp>
 
-namespace samewhere::pipeline {
+namespace samewhere::verify {
 
 void NumberedViews::add(const features::View& frame, const core::Descriptor& descriptor) {
   const int number = counter_.count(frame);
@@ -13,4 +13,4 @@ const core::Descriptor* NumberedViews::at(int number) const {
   return is_known ? &first_frames_[static_cast<std::size_t>(number)] : nullptr;
 }
 
-}  // namespace samewhere::pipeline
+}  // namespace samewhere::verify
