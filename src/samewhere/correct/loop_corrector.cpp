@@ -4,8 +4,8 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
-#include <samewhere/optimize/lay_out.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::correct {
 namespace {

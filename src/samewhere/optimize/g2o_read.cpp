@@ -11,7 +11,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {

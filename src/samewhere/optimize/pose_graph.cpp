@@ -4,7 +4,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/optimize/edge_problem.hpp>
-#include <samewhere/optimize/graduation.hpp>
+#include <samewhere/optimize/graduated_non_convexity.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
 #include <samewhere/optimize/scaled_edge.hpp>
 

@@ -8,8 +8,8 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/file.hpp>
-#include <samewhere/optimize/any_start.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
+#include <samewhere/optimize/initial_guesses.hpp>
 #include <samewhere/pipeline/graph_file.hpp>
 #include <samewhere/report/graph_plan.hpp>
 #include <samewhere/report/table.hpp>

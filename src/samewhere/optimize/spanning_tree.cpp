@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {

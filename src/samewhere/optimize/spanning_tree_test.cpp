@@ -6,7 +6,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {

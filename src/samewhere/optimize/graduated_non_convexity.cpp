@@ -2,8 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include <samewhere/optimize/graduation.hpp>
-#include <samewhere/optimize/loops_that_agree.hpp>
+#include <samewhere/optimize/consistent_loops.hpp>
+#include <samewhere/optimize/graduated_non_convexity.hpp>
 
 namespace samewhere::optimize {
 namespace {

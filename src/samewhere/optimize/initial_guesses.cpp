@@ -3,11 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include <samewhere/optimize/any_start.hpp>
 #include <samewhere/optimize/chordal.hpp>
 #include <samewhere/optimize/edge_problem.hpp>
-#include <samewhere/optimize/graduation.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/graduated_non_convexity.hpp>
+#include <samewhere/optimize/initial_guesses.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {

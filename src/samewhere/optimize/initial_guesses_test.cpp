@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/random.hpp>
-#include <samewhere/optimize/any_start.hpp>
 #include <samewhere/optimize/chordal.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/initial_guesses.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {

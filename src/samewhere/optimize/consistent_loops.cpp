@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include <samewhere/optimize/loops_that_agree.hpp>
+#include <samewhere/optimize/consistent_loops.hpp>
 
 namespace samewhere::optimize {
 namespace {
