@@ -15,6 +15,7 @@ struct FieldInfo {
   std::optional<double> min = std::nullopt;
   std::optional<double> max = std::nullopt;
   std::vector<std::string_view> choices = {};  // names of an enum's values, in their order
+  bool is_expert = false;
 };
 
 // Walks over the fields of a config struct. Every folder with settings has a `struct Config` and

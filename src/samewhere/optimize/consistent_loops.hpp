@@ -9,12 +9,13 @@
 
 namespace samewhere::optimize {
 
-// Which of these edges say the same, in groups of two or more, the largest first, twenty at most:
-// their ends are near each other on one walk, and where the one would put the other is no further
-// off than `limit` variances of as many edges as lie between them. Of a graph whose nodes share one
-// unit.
-std::vector<std::vector<std::size_t>> loops_that_agree(const PoseGraph& graph,
+// Groups of two or more of these loop edges that are consistent with each other, the largest first.
+// Two are consistent if odometry joins their ends, at most config.max_gap_nodes nodes apart, and
+// one predicts the other with a squared error of at most `limit` for each edge between them. Of a
+// graph whose nodes share one unit. A weaker form of pairwise consistency (Mangelson et al., ICRA
+// 2018), without covariances of odometry.
+std::vector<std::vector<std::size_t>> consistent_loops(const PoseGraph& graph,
                                                        const std::vector<std::size_t>& edges,
-                                                       double limit);
+                                                       double limit, const LoopGroupConfig& config);
 
 }  // namespace samewhere::optimize

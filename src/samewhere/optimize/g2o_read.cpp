@@ -106,8 +106,8 @@ class Reader {
     }
   }
 
-  // Nodes stand in the order of the path, whatever that of the lines is: what is earlier and later
-  // matters to who is believed.
+  // Nodes are in the order of the trajectory, whatever that of the lines is: which loops are
+  // rejected depends on it (loop_segments.hpp).
   void sort_by_name() {
     const std::vector<core::Rigid3> as_read = std::move(found_.graph.world_from_node);
     found_.names.clear();

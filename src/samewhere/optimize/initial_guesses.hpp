@@ -6,25 +6,24 @@
 
 namespace samewhere::optimize {
 
-// From which poses a solution was reached: those that the nodes had, those where odometry and then
-// loops lead (lay_out.hpp), those of the chordal relaxation (chordal.hpp).
-enum class GraphStart { kGiven, kOdometry, kChordal };
+// Initial poses of a solution: those that the nodes had, those along a spanning tree of odometry
+// and then loops (spanning_tree.hpp), those of the chordal relaxation (chordal.hpp).
+enum class InitialGuess { kGiven, kOdometry, kChordal };
 
-std::string_view name_of(GraphStart start);
+std::string_view name_of(InitialGuess guess);
 
-struct AnyStartSummary {
-  PoseGraphSummary solution;  // costs before are those of the poses that were given
-  GraphStart start = GraphStart::kGiven;
+struct BestOfGuesses {
+  PoseGraphSummary solution;  // costs before are those of the given poses
+  InitialGuess guess = InitialGuess::kGiven;
 };
 
-// As solve_pose_graph, of a graph whose poses come from elsewhere and may be far from the best or
-// from the origin. Solved about the first held node, which stays as it was to the last bit. The
-// starts are taken in the order of their squared errors; the first after which noise explains all
-// squared errors (their sum is within 5 standard deviations of its expectation, under 2 % of the
-// loops refused), or of more than 2000 poses that refuses some loops but not half, is the answer,
-// else the one that ended with the least robust cost. Then the edges believed are solved to the
-// end: PoseGraphSummary::has_converged says whether it was reached within four times
-// Config::graph_iterations.
-AnyStartSummary solve_from_any_start(PoseGraph& graph, const Config& config);
+// As solve_pose_graph, of a graph whose poses come from elsewhere and may be far from the optimum
+// or from the origin. Solved about the first held node, whose pose stays bit for bit. Guesses are
+// tried in the order of their squared errors. The first solution that noise explains
+// (is_consistent) is taken; in a graph of more than Config::initial_guesses.large_graph_nodes poses
+// also the first that rejects some loops but not half; else the one with the least robust cost.
+// Then the accepted edges are solved to the end: PoseGraphSummary::has_converged says whether it
+// was reached within Config::initial_guesses.final_factor times Config::graph_iterations.
+BestOfGuesses solve_from_initial_guesses(PoseGraph& graph, const Config& config);
 
 }  // namespace samewhere::optimize

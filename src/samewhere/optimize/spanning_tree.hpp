@@ -4,10 +4,10 @@
 
 namespace samewhere::optimize {
 
-// Puts each node where the edges lead from those that hold the graph (held_nodes): over edges that
-// are no loops as far as these go, over loops from there. A start for who does not trust the poses
-// that the nodes have; in a graph with scales the units come along. Throws ContractError for an
-// edge to a node that is not there.
-void lay_out(PoseGraph& graph);
+// Composes the pose of each node from the edges of a spanning tree, rooted at the nodes that fix
+// the gauge (held_nodes): along odometry as far as it goes, along loops from there. An initial
+// guess that does not depend on the poses of the nodes; in a graph with scales, the units follow
+// the edges, too. Throws ContractError for an edge to a node that is not there.
+void place_by_spanning_tree(PoseGraph& graph);
 
 }  // namespace samewhere::optimize
