@@ -30,7 +30,7 @@ std::string name_of(const core::LedgerRow& row) {
 bool holds(const MapVersion& map, core::CandidateId cause) {
   const auto is_it = [&](const scene::LoopEdge& loop) { return loop.cause == cause; };
   return std::any_of(map.loops.begin(), map.loops.end(), is_it) ||
-         std::any_of(map.doubted_loops.begin(), map.doubted_loops.end(), is_it);
+         std::any_of(map.suspended_loops.begin(), map.suspended_loops.end(), is_it);
 }
 
 core::LedgerRow refused(core::LedgerRow row, const std::string& reason) {
@@ -169,17 +169,17 @@ ByHand forced_by_hand(const MapVersion& map, const core::LedgerRow& row, const c
   Correction correction = with_loop(holds(map, cause) ? without_loop(map, cause, config) : map,
                                     edge, config, rival ? rival->first_loop : core::CandidateId());
   const correct::Closing& closing = correction.closing;
-  if (closing.refused)
+  if (closing.rejected)
     throw InputError(
         fmt::format("{}: {}; a larger optimize.loop_chi2, or another "
                     "optimize.loop_loss, would take it",
-                    name_of(row), bent_by(*closing.refused, config)));
+                    name_of(row), bent_by(*closing.rejected, config)));
   ByHand changed{{}, {accepted(row, config, true)}};
   for (const auto& bent : closing.withdrawn)
     changed.rows.push_back(refused(
         known_of(bent.loop, ledger),
         fmt::format("{}, since {} was accepted by hand", bent_by(bent, config), name_of(row))));
-  for (const auto& believed : closing.believed)
+  for (const auto& believed : closing.accepted)
     if (believed.cause != cause)
       changed.rows.push_back(accepted(known_of(believed, ledger), config, false));
   changed.map = bundled(std::move(correction.map), config);

@@ -71,7 +71,8 @@ double g2o_chi2(const optimize::PoseGraph& graph, const std::vector<double>& wei
 std::vector<report::Figure> figures_of_solution(const Solved& solved) {
   const optimize::PoseGraphSummary& summary = solved.summary.solution;
   std::size_t refused = 0;
-  for (const double weight : summary.weights) refused += weight < optimize::kMinInlierWeight ? 1 : 0;
+  for (const double weight : summary.weights)
+    refused += weight < optimize::kMinInlierWeight ? 1 : 0;
   return {{"cost before / after",
            fmt::format("{:.6g} / {:.6g} (half of the squared errors; before: of all edges, after: "
                        "of those believed)",
@@ -106,9 +107,9 @@ report::GraphRecord record_of(const optimize::PoseGraph& graph, std::vector<core
   record.is_planar = graph.is_planar;
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const optimize::PoseEdge& edge = graph.edges[i];
-    auto& pairs = !edge.is_loop             ? record.path
+    auto& pairs = !edge.is_loop                              ? record.path
                   : weights[i] >= optimize::kMinInlierWeight ? record.believed
-                                            : record.refused;
+                                                             : record.refused;
     pairs.emplace_back(edge.a, edge.b);
   }
   return record;
