@@ -59,7 +59,7 @@ class Reader {
                       path.string(), found_.names.size(), found_.graph.edges.size()));
     }
     found_.is_without_vertices = is_without_vertices;
-    if (is_without_vertices) lay_out(found_.graph);
+    if (is_without_vertices) place_by_spanning_tree(found_.graph);
     warn_of_projected(path);
   }
 

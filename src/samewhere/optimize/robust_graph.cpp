@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <samewhere/optimize/graph_consistency.hpp>
 #include <samewhere/optimize/robust_graph.hpp>
