@@ -160,7 +160,7 @@ bool Mapping::correct(const AcceptedLoop& heard) {
   const correct::Closing& closing = correction.closing;
   think_again(closing, *loop);
   map_ = correction.map;
-  if (!closing.believed.empty()) full_bundles_.note_correction(map_);
+  if (!closing.accepted.empty()) full_bundles_.note_correction(map_);
   if (!closing.withdrawn.empty()) withdrawn_at_ = map_.number;
   return !closing.withdrawn.empty();
 }
@@ -179,15 +179,15 @@ std::optional<AcceptedLoop> Mapping::reverified(AcceptedLoop heard) {
 }
 
 void Mapping::think_again(const correct::Closing& closing, const scene::LoopEdge& newest) {
-  if (closing.refused)
-    reject(closing.refused->loop, core::Refusal::kGraph, bent_by(*closing.refused, config_));
+  if (closing.rejected)
+    reject(closing.rejected->loop, core::Refusal::kGraph, bent_by(*closing.rejected, config_));
   for (const auto& bent : closing.withdrawn) {
     reject(bent.loop, core::Refusal::kWithdrawn,
            fmt::format("{}, since frames {} and {} are one place", bent_by(bent, config_),
                        map_.at(newest.query).view.frame.index(),
                        map_.at(newest.match).view.frame.index()));
   }
-  for (const auto& loop : closing.believed)
+  for (const auto& loop : closing.accepted)
     if (loop.cause != newest.cause) accept_again(loop);
 }
 

@@ -31,7 +31,7 @@ std::string name_of(const core::LedgerRow& row) {
 bool holds(const MapVersion& map, core::CandidateId cause) {
   const auto is_it = [&](const scene::LoopEdge& loop) { return loop.cause == cause; };
   return std::any_of(map.loops.begin(), map.loops.end(), is_it) ||
-         std::any_of(map.doubted_loops.begin(), map.doubted_loops.end(), is_it);
+         std::any_of(map.suspended_loops.begin(), map.suspended_loops.end(), is_it);
 }
 
 core::LedgerRow refused(core::LedgerRow row, const std::string& reason) {
@@ -170,17 +170,17 @@ OverriddenMap with_forced(const MapVersion& map, const core::LedgerRow& row,
       pipeline::with_loop(holds(map, cause) ? pipeline::without_loop(map, cause, config) : map,
                           edge, config, competing ? competing->first_loop : core::CandidateId());
   const correct::Closing& closing = correction.closing;
-  if (closing.refused)
+  if (closing.rejected)
     throw InputError(
         fmt::format("{}: {}; a larger optimize.loop_chi2 or another "
                     "optimize.loop_loss would accept it",
-                    name_of(row), pipeline::bent_by(*closing.refused, config)));
+                    name_of(row), pipeline::bent_by(*closing.rejected, config)));
   OverriddenMap changed{{}, {accepted(row, config, true)}};
   for (const auto& bent : closing.withdrawn)
     changed.rows.push_back(refused(known_of(bent.loop, ledger),
                                    fmt::format("{}, since {} was accepted by hand",
                                                pipeline::bent_by(bent, config), name_of(row))));
-  for (const auto& believed : closing.believed)
+  for (const auto& believed : closing.accepted)
     if (believed.cause != cause)
       changed.rows.push_back(accepted(known_of(believed, ledger), config, false));
   changed.map = bundled(std::move(correction.map), config);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/random.hpp>
-#include <samewhere/optimize/any_start.hpp>
 #include <samewhere/optimize/chordal.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/initial_guesses.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr double kStep_m = 0.02;
 constexpr double kTurn_rad = 0.1;
 
-// Twice around a circle; odometry that turns by kTurn_rad a step ends somewhere else.
+// Two laps of a circle, with odometry whose rotation error is kTurn_rad per step.
 PoseGraph circle(int num_poses, bool is_planar, const std::vector<std::pair<int, int>>& loops) {
   core::Random random(3);
   PoseGraph graph;
@@ -42,13 +42,13 @@ PoseGraph circle(int num_poses, bool is_planar, const std::vector<std::pair<int,
   graph.world_from_node.resize(truth.size());
   for (int i = 1; i < num_poses; ++i) add(i - 1, i, false);
   for (const auto& [a, b] : loops) add(a, b, true);
-  lay_out(graph);
+  place_by_spanning_tree(graph);
   return graph;
 }
 
 const std::vector<std::pair<int, int>> kLoops = {{0, 100}, {10, 110}, {0, 199}};
 
-TEST(Chordal, PutsNodesWhereExactEdgesHaveThem) {
+TEST(Chordal, RecoversPosesFromExactEdges) {
   for (const bool is_planar : {false, true}) {
     const PoseGraph truth = circle(40, is_planar, {});
     PoseGraph graph = truth;
@@ -61,9 +61,9 @@ TEST(Chordal, PutsNodesWhereExactEdgesHaveThem) {
   }
 }
 
-TEST(Chordal, HoldsFixedNodesAndEveryPart) {
+TEST(Chordal, KeepsFixedNodesAndTheGaugeOfEveryComponent) {
   PoseGraph graph = circle(6, false, {});
-  std::erase_if(graph.edges, [](const PoseEdge& edge) { return edge.a == 2; });  // two parts
+  std::erase_if(graph.edges, [](const PoseEdge& edge) { return edge.a == 2; });  // two components
   graph.fixed_nodes = {4};
   const PoseGraph before = graph;
   place_by_chordal_relaxation(graph);
@@ -71,37 +71,37 @@ TEST(Chordal, HoldsFixedNodesAndEveryPart) {
     EXPECT_EQ(graph.world_from_node[held].translation, before.world_from_node[held].translation);
 }
 
-TEST(AnyStart, TrueLoopsAreBelievedHoweverPoorTheOdometry) {
+TEST(InitialGuesses, AcceptTrueLoopsDespitePoorOdometry) {
   for (const bool is_planar : {false, true}) {
     PoseGraph graph = circle(200, is_planar, kLoops);
-    const AnyStartSummary found = solve_from_any_start(graph, {});
+    const BestOfGuesses found = solve_from_initial_guesses(graph, {});
     EXPECT_TRUE(found.solution.has_converged);
     EXPECT_LT(found.solution.final_cost, 30.0);
     for (const double weight : found.solution.weights) EXPECT_EQ(weight, 1.0);
   }
 }
 
-TEST(AnyStart, AFalseLoopIsRefusedAndTrueOnesAreNot) {
+TEST(InitialGuesses, RejectAFalseLoopAlone) {
   PoseGraph graph = circle(200, true, {{0, 100}, {10, 110}, {20, 120}, {5, 105}, {0, 199}});
-  PoseEdge lie = graph.edges.back();
-  lie.a = 30;
-  lie.b = 60;
-  lie.a_from_b.translation = {100.0, 0.0, 0.0};  // farther than odometry is long
-  graph.edges.push_back(lie);
-  const AnyStartSummary found = solve_from_any_start(graph, {});
+  PoseEdge outlier = graph.edges.back();
+  outlier.a = 30;
+  outlier.b = 60;
+  outlier.a_from_b.translation = {100.0, 0.0, 0.0};  // longer than the odometry
+  graph.edges.push_back(outlier);
+  const BestOfGuesses found = solve_from_initial_guesses(graph, {});
   EXPECT_EQ(found.solution.weights.back(), 0.0);
   for (std::size_t i = 0; i + 1 < graph.edges.size(); ++i)
     EXPECT_EQ(found.solution.weights[i], 1.0) << i;
 }
 
-TEST(AnyStart, AShiftOfAllPosesChangesNothing) {
+TEST(InitialGuesses, GiveTheSameSolutionAfterAShiftOfAllPoses) {
   PoseGraph graph = circle(60, false, {{0, 30}, {5, 35}});
   PoseGraph shifted = graph;
   const Eigen::Vector3d far(456789.0, 5123457.0, 100.0);
   for (core::Rigid3& pose : shifted.world_from_node) pose.translation += far;
   const core::Rigid3 held = shifted.world_from_node.front();
-  const double cost = solve_from_any_start(graph, {}).solution.final_cost;
-  EXPECT_NEAR(solve_from_any_start(shifted, {}).solution.final_cost, cost, 1e-6);
+  const double cost = solve_from_initial_guesses(graph, {}).solution.final_cost;
+  EXPECT_NEAR(solve_from_initial_guesses(shifted, {}).solution.final_cost, cost, 1e-6);
   EXPECT_EQ(shifted.world_from_node.front().translation, held.translation);
   EXPECT_LT(
       (shifted.world_from_node.back().translation - far - graph.world_from_node.back().translation)
@@ -109,10 +109,10 @@ TEST(AnyStart, AShiftOfAllPosesChangesNothing) {
       1e-3);
 }
 
-TEST(AnyStart, SaysWhereTheIterationsRanOut) {
+TEST(InitialGuesses, ReportMissingConvergence) {
   PoseGraph graph = circle(200, true, kLoops);
   const Config one{.graph_iterations = 1, .loop_loss = LoopLoss::kLeastSquares};
-  EXPECT_FALSE(solve_from_any_start(graph, one).solution.has_converged);
+  EXPECT_FALSE(solve_from_initial_guesses(graph, one).solution.has_converged);
 }
 
 }  // namespace

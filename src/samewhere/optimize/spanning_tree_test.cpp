@@ -6,7 +6,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {
@@ -17,8 +17,8 @@ core::Rigid3 any_pose(core::Random& random) {
   return core::exp_r3so3(tangent);
 }
 
-// Nodes anywhere, of which edges know where they truly are, relative to each other.
-class LayOut : public testing::Test {
+// Nodes at random poses, with edges of the true relative poses.
+class SpanningTreeGuess : public testing::Test {
  protected:
   // With scales: the unit of node i has this logarithm.
   void make(int num_nodes, const std::vector<double>& log_scales = {}) {
@@ -54,36 +54,36 @@ class LayOut : public testing::Test {
   PoseGraph graph_;
 };
 
-TEST_F(LayOut, GoesWhereEdgesLeadWhicheverWayTheyPoint) {
+TEST_F(SpanningTreeGuess, FollowsEdgesInBothDirections) {
   make(5);
   join(0, 1);
   join(2, 1);
   join(2, 3);
   join(4, 3);
-  lay_out(graph_);
+  place_by_spanning_tree(graph_);
   for (int node = 0; node < 5; ++node) EXPECT_LT(error_of(node), 1e-9) << node;
 }
 
-TEST_F(LayOut, OdometryGoesBeforeLoops) {
+TEST_F(SpanningTreeGuess, PrefersOdometryToLoops) {
   make(6);
-  // a lie from the first node to the last, and a longer way that is true
-  PoseEdge& lie = join(0, 5, true);
-  lie.a_from_b.translation.x() += 3.0;
+  // a false loop from the first node to the last, and true odometry between them
+  PoseEdge& outlier = join(0, 5, true);
+  outlier.a_from_b.translation.x() += 3.0;
   for (int i = 1; i < 6; ++i) join(i - 1, i);
-  lay_out(graph_);
+  place_by_spanning_tree(graph_);
   for (int node = 0; node < 6; ++node) EXPECT_LT(error_of(node), 1e-9) << node;
 }
 
-TEST_F(LayOut, LoopsJoinWhatOdometryDoesNot) {
+TEST_F(SpanningTreeGuess, UsesLoopsWhereOdometryEnds) {
   make(4);
   join(0, 1);
   join(1, 3, true);
   join(3, 2);
-  lay_out(graph_);
+  place_by_spanning_tree(graph_);
   for (int node = 0; node < 4; ++node) EXPECT_LT(error_of(node), 1e-9) << node;
 }
 
-TEST_F(LayOut, WhatIsHeldStaysAndHoldsItsPart) {
+TEST_F(SpanningTreeGuess, KeepsFixedNodesAsRootsOfTheirComponent) {
   make(4);
   join(0, 1);
   join(2, 3);
@@ -91,19 +91,19 @@ TEST_F(LayOut, WhatIsHeldStaysAndHoldsItsPart) {
   graph_.world_from_node[1] = truth_[1];
   graph_.world_from_node[0] = {};
   const core::Rigid3 elsewhere = graph_.world_from_node[3];
-  lay_out(graph_);
+  place_by_spanning_tree(graph_);
   EXPECT_LT(error_of(0), 1e-9);
   EXPECT_EQ(graph_.world_from_node[3].translation, elsewhere.translation);
   const core::Rigid3 moved = elsewhere * inverse(truth_[3]) * truth_[2];
   EXPECT_LT(core::log_r3so3(inverse(moved) * graph_.world_from_node[2]).norm(), 1e-9);
 }
 
-TEST_F(LayOut, UnitsComeAlong) {
+TEST_F(SpanningTreeGuess, ComposesUnits) {
   make(4, {0.0, 0.2, -0.3, 0.1});
   join(0, 1);
   join(2, 1);
   join(2, 3);
-  lay_out(graph_);
+  place_by_spanning_tree(graph_);
   for (int node = 0; node < 4; ++node) {
     EXPECT_LT(error_of(node), 1e-9) << node;
     const auto i = static_cast<std::size_t>(node);
@@ -111,10 +111,10 @@ TEST_F(LayOut, UnitsComeAlong) {
   }
 }
 
-TEST_F(LayOut, AnEdgeToANodeThatIsNotThereIsABrokenPromise) {
+TEST_F(SpanningTreeGuess, RefusesAnEdgeToAMissingNode) {
   make(2);
   join(0, 1).b = 2;
-  EXPECT_THROW(lay_out(graph_), core::ContractError);
+  EXPECT_THROW(place_by_spanning_tree(graph_), core::ContractError);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ void join(Neighbours& neighbours, core::KeyframeId a, core::KeyframeId b) {
 
 constexpr std::size_t kUnreached = std::numeric_limits<std::size_t>::max();
 
-// Number of edges from a to b at least.
+// Number of edges of the shortest path from a to b, breadth first.
 std::size_t num_edges_between(const Neighbours& neighbours, std::size_t a, std::size_t b) {
   std::vector<std::size_t> num_edges(neighbours.size(), kUnreached);
   std::deque<std::size_t> next = {a};
@@ -36,8 +36,8 @@ std::size_t num_edges_between(const Neighbours& neighbours, std::size_t a, std::
 
 }  // namespace
 
-bool are_joined_by_loop(const MapVersion& map, core::KeyframeId a, core::KeyframeId b) {
-  core::require(is_live(map.at(a)) && is_live(map.at(b)), "ways lead between live keyframes");
+bool shortest_path_uses_loop(const MapVersion& map, core::KeyframeId a, core::KeyframeId b) {
+  core::require(is_live(map.at(a)) && is_live(map.at(b)), "a path joins two live keyframes");
   if (map.loops.empty()) return false;
   Neighbours neighbours(map.keyframes.size());
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {

@@ -6,7 +6,7 @@ namespace samewhere::scene {
 namespace {
 
 // A chain 0 - 1 - ... - 9 of odometry and a loop between 1 and 8.
-TEST(Ways, WhatIsNearOnlyByALoopRestsOnIt) {
+TEST(ShortestPath, UsesALoopThatIsShorterThanOdometry) {
   const features::View view = features::test_view(features::test_world(1, 20), 0, {});
   Edit edit;
   for (std::uint64_t i = 0; i < 10; ++i) {
@@ -19,7 +19,7 @@ TEST(Ways, WhatIsNearOnlyByALoopRestsOnIt) {
   }
   const MapVersion chain = apply({}, edit);
   const core::KeyframeId two(2);
-  EXPECT_FALSE(are_joined_by_loop(chain, core::KeyframeId(9), two));
+  EXPECT_FALSE(shortest_path_uses_loop(chain, core::KeyframeId(9), two));
   Edit loop;
   loop.loops = {{core::KeyframeId(8),
                  core::KeyframeId(1),
@@ -27,10 +27,10 @@ TEST(Ways, WhatIsNearOnlyByALoopRestsOnIt) {
                  core::Matrix6d::Identity(),
                  core::CandidateId(1)}};
   const MapVersion closed = apply(chain, loop);
-  EXPECT_TRUE(are_joined_by_loop(closed, core::KeyframeId(9), two));
-  EXPECT_TRUE(are_joined_by_loop(closed, two, core::KeyframeId(9)));
-  EXPECT_FALSE(are_joined_by_loop(closed, core::KeyframeId(9), core::KeyframeId(7)));
-  EXPECT_FALSE(are_joined_by_loop(closed, two, two));
+  EXPECT_TRUE(shortest_path_uses_loop(closed, core::KeyframeId(9), two));
+  EXPECT_TRUE(shortest_path_uses_loop(closed, two, core::KeyframeId(9)));
+  EXPECT_FALSE(shortest_path_uses_loop(closed, core::KeyframeId(9), core::KeyframeId(7)));
+  EXPECT_FALSE(shortest_path_uses_loop(closed, two, two));
 }
 
 }  // namespace
