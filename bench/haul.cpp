@@ -76,7 +76,7 @@ class Haul {
   // The map is saved as it grows, if a file is named.
   Haul(const pipeline::Config& config, const std::string& map_file)
       : source_(run::open_source(config)),
-        slam_(with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
+        slam_(run::with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
               hooks()) {
     if (!map_file.empty()) saver_.emplace(map_file, config, slam_.describer_checksum());
   }

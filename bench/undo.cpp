@@ -83,7 +83,7 @@ Outcome walk_twice(const pipeline::Config& config, int lie_after, bool is_contro
   const core::Truth truth = source->truth();
   Liar liar(config, lie_after, truth);
   Witness witness(config, liar, truth);
-  const pipeline::Config in_frames = with_window_in_frames(config, source->info());
+  const pipeline::Config in_frames = run::with_window_in_frames(config, source->info());
   using pipeline::Slam;
   bool is_nudged = false;
   pipeline::SlamHooks lied_to;

@@ -16,7 +16,7 @@
 #include <samewhere/report/loops.hpp>
 #include <samewhere/run/recognition.hpp>
 
-namespace samewhere::pipeline {
+namespace samewhere::run {
 namespace {
 
 // Steps that hand on a frame's number and do nothing else.
@@ -113,7 +113,7 @@ NextFrame two_laps() {
   };
 }
 
-std::string found_by(const Config& config, decltype(run_in_turn)* run) {
+std::string found_by(const pipeline::Config& config, decltype(run_in_turn)* run) {
   cv::setNumThreads(1);
   Recognition recognition(config);
   run(two_laps(), recognition.steps());
@@ -126,7 +126,7 @@ std::string found_by(const Config& config, decltype(run_in_turn)* run) {
 
 TEST(RecognitionThreads, FindOnRealPicturesWhatOneThreadFinds) {
   for (const char* name : {"default", "paper"}) {
-    Config config = profile(name);
+    pipeline::Config config = pipeline::profile(name);
     config.retrieve.window_frames = 2;
     config.retrieve.num_draws = 1000;
     EXPECT_EQ(found_by(config, run_in_threads), found_by(config, run_in_turn)) << name;
@@ -134,4 +134,4 @@ TEST(RecognitionThreads, FindOnRealPicturesWhatOneThreadFinds) {
 }
 
 }  // namespace
-}  // namespace samewhere::pipeline
+}  // namespace samewhere::run

@@ -122,7 +122,7 @@ Found found_by(const std::vector<core::Frame>& frames, const Config& config,
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("samewhere_slam_threads_" + std::to_string(getpid()) + ".sw");
   std::filesystem::remove(path);
-  std::optional<MapSaver> saver;
+  std::optional<run::MapSaver> saver;
   Slam slam(config, depth_from,
             {.keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
              .dawdle = dawdle});
