@@ -198,7 +198,7 @@ TEST_F(ByHandInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
     }
     return std::string("nothing was said");
   };
-  EXPECT_THAT(why_not_shown(), HasSubstr("map.sw: has no picture of frame 13"));
+  EXPECT_THAT(why_not_shown(), HasSubstr("map.sw: has no thumbnail of frame 13"));
   {
     scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
     file.load();
@@ -322,7 +322,7 @@ TEST_F(ByHandInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
     edit.keyframes[0].view.frame = core::FrameId(0, 1);
     file.commit(apply(map, edit), {});
   }
-  EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("more than one run"));
+  EXPECT_THAT(why_not_changed(0, Word::kForce), HasSubstr("several runs"));
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithWhatSpokeForIt) {
   EXPECT_EQ(read_back.evidence.rival->first_loop, core::CandidateId(4));
   EXPECT_EQ(read_back.evidence.rival->gain, 9.5);
   EXPECT_THAT(core::reason_of(found.at(0).verdict),
-              HasSubstr("the camera where frame 3 was taken, 1.80 m from here, but odometry"));
+              HasSubstr("the place of frame 3 at 1.80 m: odometry supports"));
 }
 
 TEST_F(LoopsRead, AnotherPlaceThatExplainsTheViewIsReadBack) {
