@@ -42,7 +42,7 @@ std::optional<double> first_stamp_s(const scene::MapVersion& map, std::uint16_t 
 // than `known_after_s` ago: another keyframe adds no information. A camera that stays in one room
 // observes it anew within minutes; shorter recordings are not affected. Stamps of an earlier
 // session do not compare: its keyframes count as older.
-bool is_of_known_place(const scene::MapVersion& map, const TrackedView& tracked,
+bool is_of_known_place(const scene::MapVersion& map, const scene::TrackedView& tracked,
                        const Config& config) {
   const std::uint16_t session = tracked.view.frame.session();
   const auto session_begin_s = first_stamp_s(map, session);
@@ -133,7 +133,7 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
   return build_local_map(map, reference, {config.max_neighbours, config.near_neighbours});
 }
 
-double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked) {
+double median_landmark_depth(const scene::MapVersion& map, const scene::TrackedView& tracked) {
   const core::Rigid3 camera_from_world =
       inverse(world_from_frame(map, tracked.pose) * tracked.view.rig->body_from_camera[0]);
   std::vector<double> depths;
@@ -142,7 +142,7 @@ double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tr
   return core::median(std::move(depths)).value_or(0.0);
 }
 
-bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
+bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked,
                       const Config& config) {
   if (!can_keep(map, tracked.view, config)) return false;
   const bool has_depth = !is_without_depth(map);
@@ -201,7 +201,7 @@ scene::Edit give_up(const scene::MapVersion& map) {
   return edit;
 }
 
-scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked) {
+scene::Edit add_keyframe(const scene::MapVersion& map, const scene::TrackedView& tracked) {
   const core::FramePose& pose = tracked.pose;
   scene::Keyframe keyframe = next_keyframe(map, tracked.view, world_from_frame(map, pose));
   // a reference that was culled since then hangs on another: the edge goes there

@@ -3,21 +3,12 @@
 #include <optional>
 #include <vector>
 
-#include <samewhere/core/frame_pose.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/map/config.hpp>
 #include <samewhere/scene/local_map.hpp>
+#include <samewhere/scene/tracked_view.hpp>
 
 namespace samewhere::map {
-
-// A view with a pose and its observations of landmarks.
-struct TrackedView {
-  features::View view;
-  core::FramePose pose;
-  std::vector<std::pair<int, core::LandmarkId>> landmarks;  // feature, landmark
-  // features of what moves, or may: their own depth makes them no landmarks
-  std::vector<int> passing;
-};
 
 // Two views without depth, their relative pose, and the points observed by both.
 struct ViewPair {
@@ -44,11 +35,11 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
                           const Config& config);
 
 // Median depth of the visible landmarks of the view along its optical axis, map units; 0: none.
-double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked);
+double median_landmark_depth(const scene::MapVersion& map, const scene::TrackedView& tracked);
 
 // Keyframe decision: whether the view moved or turned far from its reference keyframe or tracks few
 // of its landmarks, and keyframes of two minutes ago do not observe most of it.
-bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
+bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked,
                       const Config& config);
 
 // The edit that makes the view the next keyframe. Without a pose it is the first of its session and
@@ -60,6 +51,6 @@ scene::Edit start_map(const scene::MapVersion& map, const features::View& view,
 scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair);
 // The reset: an edit that culls every landmark. The keyframes stay for place recognition.
 scene::Edit give_up(const scene::MapVersion& map);
-scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked);
+scene::Edit add_keyframe(const scene::MapVersion& map, const scene::TrackedView& tracked);
 
 }  // namespace samewhere::map

@@ -24,7 +24,7 @@ std::vector<scene::Edit> part_places(const scene::MapVersion& before,
 
 // Of the landmarks that the view observes, those that the map still has there. For a view that was
 // tracked before places were parted.
-TrackedView without_parted(const scene::MapVersion& map, TrackedView tracked,
-                           const features::Config& features);
+scene::TrackedView without_parted(const scene::MapVersion& map, scene::TrackedView tracked,
+                                  const features::Config& features);
 
 }  // namespace samewhere::map

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxUnsentFrames = 60;
 // grows by copying leaves as much again behind.
 constexpr std::size_t kReservedFrames = 108000;
 
-bool is_weak(const map::TrackedView& tracked) {
+bool is_weak(const scene::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
 
@@ -67,7 +67,7 @@ Tracking::Tracking(const Config& config, const scene::StoredMap& known, bool is_
 void Tracking::feed(const core::Frame& frame) {
   core::require(frame.id == core::FrameId(frames_.size(), session_),
                 "frames are numbered from 0, in the session that runs");
-  std::optional<map::TrackedView> tracked;
+  std::optional<scene::TrackedView> tracked;
   {
     const core::ScopedTimer timer(timings_, "track");
     if (under_way_ && under_way_->due_at_frame <= frames_.size()) see_kept();
@@ -97,8 +97,8 @@ void Tracking::finish() {
   mapping_.send(EndOfInput{unsent_frames()});
 }
 
-std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
-                                                 const features::View& view) {
+std::optional<scene::TrackedView> Tracking::locate(const core::Frame& frame,
+                                                   const features::View& view) {
   if (map_.keyframes.empty()) return start(frame, view);
   auto tracked = last_ ? locate_in_map(frame, view) : relocalise(frame, view);
   if (!tracked && !last_ && is_start_doubtful(view.stamp_s)) {
@@ -118,9 +118,9 @@ std::optional<map::TrackedView> Tracking::locate(const core::Frame& frame,
   return tracked;
 }
 
-std::optional<map::TrackedView> Tracking::locate_in_map(const core::Frame& frame,
-                                                        const features::View& view) {
-  std::optional<map::TrackedView> best = track_from_last(view);
+std::optional<scene::TrackedView> Tracking::locate_in_map(const core::Frame& frame,
+                                                          const features::View& view) {
+  std::optional<scene::TrackedView> best = track_from_last(view);
   if ((!best || is_weak(*best)) && under_way_) {
     see_kept();
     try_again(view, best);
@@ -138,8 +138,8 @@ std::optional<map::TrackedView> Tracking::locate_in_map(const core::Frame& frame
   return is_better ? held : best;
 }
 
-std::optional<map::TrackedView> Tracking::held_by_depth(const core::Frame& frame,
-                                                        const features::View& view) {
+std::optional<scene::TrackedView> Tracking::held_by_depth(const core::Frame& frame,
+                                                          const features::View& view) {
   constexpr double kAll = 1.0;
   const bool is_asked = config_.track.depth_alignment.min_agreement <= kAll;
   if (!is_asked || !frame.depth_m || !last_depth_m_ || local_map_.size() == 0) return std::nullopt;
@@ -160,21 +160,21 @@ std::optional<map::TrackedView> Tracking::held_by_depth(const core::Frame& frame
       view, tracker_.track_at(view, local_map_, reference_from_last * last_from_this, *aligned));
 }
 
-std::optional<map::TrackedView> Tracking::track_from_last(const features::View& view) {
+std::optional<scene::TrackedView> Tracking::track_from_last(const features::View& view) {
   if (local_map_.size() == 0) return std::nullopt;  // nobody knows where to look
   const auto track = tracker_.track(view, local_map_, guessed_pose());
   if (!track) return std::nullopt;
   return tracked_view(view, *track);
 }
 
-void Tracking::try_again(const features::View& view, std::optional<map::TrackedView>& best) {
+void Tracking::try_again(const features::View& view, std::optional<scene::TrackedView>& best) {
   auto nearer = track_from_last(view);
   if (nearer && (!best || nearer->pose.num_inliers > best->pose.num_inliers))
     best = std::move(nearer);
 }
 
-std::optional<map::TrackedView> Tracking::relocalise(const core::Frame& frame,
-                                                     const features::View& view) {
+std::optional<scene::TrackedView> Tracking::relocalise(const core::Frame& frame,
+                                                       const features::View& view) {
   mapping_.send(FindPlace{view, frame.images[0]});
   MapAnswer answer = wait_for_mapping();
   const bool has_changed = answer.map.number != map_.number;
@@ -188,7 +188,7 @@ std::optional<map::TrackedView> Tracking::relocalise(const core::Frame& frame,
                          [this](const core::FramePose& pose) { return is_within_reach(pose); });
   if (!found) return std::nullopt;
   local_map_ = std::move(found->around);
-  map::TrackedView tracked = tracked_view(view, found->track);
+  scene::TrackedView tracked = tracked_view(view, found->track);
   tracked.pose.status = core::FrameStatus::kResumed;
   return tracked;
 }
@@ -217,7 +217,7 @@ Proof Tracking::proof_to_resume(double stamp_s) const {
           is_moment && !is_without_depth(map_)};
 }
 
-void Tracking::follow(map::TrackedView& tracked) {
+void Tracking::follow(scene::TrackedView& tracked) {
   std::vector<core::LandmarkId> seen;
   for (const auto& [feature, landmark] : tracked.landmarks) seen.push_back(landmark);
   const auto most = keyframe_showing_most(map_, seen);
@@ -253,13 +253,13 @@ core::Rigid3 Tracking::guessed_pose() const {
          last_from_next_;
 }
 
-void Tracking::remember(const map::TrackedView& tracked) {
+void Tracking::remember(const scene::TrackedView& tracked) {
   last_from_next_ =
       last_ ? inverse(world_from(last_->pose)) * world_from(tracked.pose) : core::Rigid3{};
   last_ = tracked;
 }
 
-void Tracking::doubt_scale(map::TrackedView& tracked) {
+void Tracking::doubt_scale(scene::TrackedView& tracked) {
   if (!last_ || !is_without_depth(map_)) return;
   const double step =
       (world_from(tracked.pose).translation - world_from(last_->pose).translation).norm();
@@ -286,7 +286,7 @@ bool Tracking::can_promote_last() const {
          map::can_keep(map_, last_->view, config_.map);
 }
 
-void Tracking::keep(const map::TrackedView& tracked, const cv::Mat& image) {
+void Tracking::keep(const scene::TrackedView& tracked, const cv::Mat& image) {
   core::FramePose& pose = frames_.back();
   core::require(pose.frame == tracked.view.frame, "the frame that is kept is the last one");
   const core::KeyframeId added(num_keyframes_++);
@@ -295,7 +295,7 @@ void Tracking::keep(const map::TrackedView& tracked, const cv::Mat& image) {
   pose.reference_keyframe = added;
   pose.reference_from_frame = core::Rigid3{};
   const std::size_t position = frames_.size() - 1;
-  map::TrackedView followed = tracked;
+  scene::TrackedView followed = tracked;
   followed.passing = passing_.shown_in(tracked.view, tracked.pose, map_);
   followed.pose = by_odometry(tracked.pose);
   mapping_.send(AddKeyframe{std::move(followed), image, unsent_frames()});
@@ -325,7 +325,7 @@ void Tracking::look_around(core::KeyframeId reference) {
   local_map_ = map::local_map(map_, reference, config_.map);
 }
 
-bool Tracking::is_kept(const map::TrackedView& tracked) const {
+bool Tracking::is_kept(const scene::TrackedView& tracked) const {
   return keyframe_of_.contains(tracked.view.frame);
 }
 
@@ -333,9 +333,9 @@ core::Rigid3 Tracking::world_from(const core::FramePose& pose) const {
   return world_from_frame(map_, pose);
 }
 
-map::TrackedView Tracking::tracked_view(const features::View& view,
-                                        const track::Track& track) const {
-  map::TrackedView tracked{view, track.pose, {}, {}};
+scene::TrackedView Tracking::tracked_view(const features::View& view,
+                                          const track::Track& track) const {
+  scene::TrackedView tracked{view, track.pose, {}, {}};
   tracked.pose.log_scale = map_.at(track.pose.reference_keyframe).log_scale;
   for (const auto& match : track.matches) {
     tracked.landmarks.emplace_back(match.second,

@@ -54,18 +54,19 @@ class Tracking {
  private:
   features::View extract(const core::Frame& frame);
   // Where am I? Nothing: lost.
-  std::optional<map::TrackedView> locate(const core::Frame& frame, const features::View& view);
-  std::optional<map::TrackedView> locate_in_map(const core::Frame& frame,
-                                                const features::View& view);
+  std::optional<scene::TrackedView> locate(const core::Frame& frame, const features::View& view);
+  std::optional<scene::TrackedView> locate_in_map(const core::Frame& frame,
+                                                  const features::View& view);
   // Where few features hold a pose or none, in the dark or before bare walls, the depth picture
   // may: by what moved since the last frame's.
-  std::optional<map::TrackedView> held_by_depth(const core::Frame& frame,
-                                                const features::View& view);
-  std::optional<map::TrackedView> track_from_last(const features::View& view);
+  std::optional<scene::TrackedView> held_by_depth(const core::Frame& frame,
+                                                  const features::View& view);
+  std::optional<scene::TrackedView> track_from_last(const features::View& view);
   // The same again, if the map has got nearer; the better of both.
-  void try_again(const features::View& view, std::optional<map::TrackedView>& best);
+  void try_again(const features::View& view, std::optional<scene::TrackedView>& best);
   // Lost: which place of the whole map is this?
-  std::optional<map::TrackedView> relocalise(const core::Frame& frame, const features::View& view);
+  std::optional<scene::TrackedView> relocalise(const core::Frame& frame,
+                                               const features::View& view);
   // Whether one can have got there since the last pose. What lies beyond is another place that
   // looks like this one.
   bool is_within_reach(const core::FramePose& pose) const;
@@ -73,28 +74,29 @@ class Tracking {
   Proof proof_to_resume(double stamp_s) const;
   // The reference goes along with the camera: it is the keyframe that shows most of what the view
   // shows, however old, and the local map is what lies around it.
-  void follow(map::TrackedView& tracked);
+  void follow(scene::TrackedView& tracked);
   core::FramePose relative_to(core::KeyframeId reference, core::FramePose pose) const;
   // As odometry knows it: relative to the newest keyframe if the way from there to its reference
   // takes a loop. What is kept of a frame rests on no loop, or it would stay behind if the loop
   // were withdrawn, and a keyframe would hold the loop as if it were odometry.
   core::FramePose by_odometry(const core::FramePose& pose);
   core::Rigid3 guessed_pose() const;
-  void remember(const map::TrackedView& tracked);
+  void remember(const scene::TrackedView& tracked);
   // What a frame without a pose is: lost, or waiting for the map to begin.
   core::FrameStatus status_without_pose(const features::View& view) const;
   // Without depth: a pose whose scale is suspected to have changed is weak, and noted.
-  void doubt_scale(map::TrackedView& tracked);
+  void doubt_scale(scene::TrackedView& tracked);
 
   // The map begins. Nothing: not yet.
-  std::optional<map::TrackedView> start(const core::Frame& frame, const features::View& view);
+  std::optional<scene::TrackedView> start(const core::Frame& frame, const features::View& view);
   // One camera: once a second view has parallax against an earlier one.
-  std::optional<map::TrackedView> start_by_motion(const core::Frame& frame,
-                                                  const features::View& view);
+  std::optional<scene::TrackedView> start_by_motion(const core::Frame& frame,
+                                                    const features::View& view);
   // Whether who is lost in this map may give it up for a new one.
   bool is_start_doubtful(double stamp_s) const;
   // He does; with depth not at once: what hides the view may pass.
-  std::optional<map::TrackedView> start_anew(const core::Frame& frame, const features::View& view);
+  std::optional<scene::TrackedView> start_anew(const core::Frame& frame,
+                                               const features::View& view);
   // No frame so far has a pose.
   void give_up_poses();
   // Frames that were passed while the start was awaited: found in the map that it made.
@@ -103,15 +105,15 @@ class Tracking {
 
   bool can_promote_last() const;
   // The frame that was fed last becomes a keyframe. An empty image: its own is gone.
-  void keep(const map::TrackedView& tracked, const cv::Mat& image);
+  void keep(const scene::TrackedView& tracked, const cv::Mat& image);
   // The map that shows the keyframe under way; waits for it.
   void see_kept();
   MapAnswer wait_for_mapping();
   void look_around(core::KeyframeId reference);
 
-  bool is_kept(const map::TrackedView& tracked) const;
+  bool is_kept(const scene::TrackedView& tracked) const;
   core::Rigid3 world_from(const core::FramePose& pose) const;
-  map::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
+  scene::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
   std::vector<core::FramePose> unsent_frames();
 
   Config config_;
@@ -152,10 +154,10 @@ class Tracking {
 
   std::vector<core::FramePose> frames_;
   std::size_t num_sent_frames_ = 0;
-  std::optional<map::TrackedView> last_;  // the frame before, if it was located
-  int num_lost_ = 0;                      // frames since then
-  std::optional<cv::Mat> last_depth_m_;   // of that frame
-  core::Rigid3 last_from_next_;           // motion model: the last step once more
+  std::optional<scene::TrackedView> last_;  // the frame before, if it was located
+  int num_lost_ = 0;                        // frames since then
+  std::optional<cv::Mat> last_depth_m_;     // of that frame
+  core::Rigid3 last_from_next_;             // motion model: the last step once more
 };
 
 }  // namespace samewhere::pipeline

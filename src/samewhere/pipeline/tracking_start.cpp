@@ -21,8 +21,8 @@ core::FramePose starting_pose(const features::View& view, core::KeyframeId keyfr
 
 }  // namespace
 
-std::optional<map::TrackedView> Tracking::start(const core::Frame& frame,
-                                                const features::View& view) {
+std::optional<scene::TrackedView> Tracking::start(const core::Frame& frame,
+                                                  const features::View& view) {
   num_features_ = view.features->size();
   if (starter_) return start_by_motion(frame, view);
   num_with_depth_ = map::num_with_depth(view);
@@ -51,8 +51,8 @@ std::string Tracking::why_not_started() const {
   return starter_->last_refusal().empty() ? "there is no second view" : starter_->last_refusal();
 }
 
-std::optional<map::TrackedView> Tracking::start_by_motion(const core::Frame& frame,
-                                                          const features::View& view) {
+std::optional<scene::TrackedView> Tracking::start_by_motion(const core::Frame& frame,
+                                                            const features::View& view) {
   auto started = starter_->offer(view);
   if (!started) return std::nullopt;
   const track::Start& start = started->start;
@@ -80,8 +80,8 @@ bool Tracking::is_start_doubtful(double stamp_s) const {
   return followed_s < config.provisional_s && stamp_s - last->stamp_s > followed_s;
 }
 
-std::optional<map::TrackedView> Tracking::start_anew(const core::Frame& frame,
-                                                     const features::View& view) {
+std::optional<scene::TrackedView> Tracking::start_anew(const core::Frame& frame,
+                                                       const features::View& view) {
   if (!starter_ && num_lost_ < config_.track.relocalization.reinitialize_after_frames)
     return std::nullopt;
   if (place_finder_.has_fresh_place(proof_to_resume(view.stamp_s).num_views)) return std::nullopt;
@@ -125,7 +125,7 @@ void Tracking::begin_tracking(const features::View& view, int num_landmarks) {
   const core::KeyframeId newest = map_.keyframes.back().id;
   keyframe_of_[view.frame] = newest;
   look_around(newest);
-  last_ = map::TrackedView{view, starting_pose(view, newest, num_landmarks), {}, {}};
+  last_ = scene::TrackedView{view, starting_pose(view, newest, num_landmarks), {}, {}};
   last_from_next_ = {};
 }
 
