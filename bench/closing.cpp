@@ -89,7 +89,7 @@ std::vector<std::string> row_of(const scene::MapVersion& map, const std::string&
   for (int i = 0; i < num_runs; ++i) spent_ms.push_back(measure_ms());
   return {std::to_string(map.keyframes.size()),
           std::to_string(map.loops.size()),
-          std::to_string(map.doubted_loops.size()),
+          std::to_string(map.suspended_loops.size()),
           what,
           fmt::format("{:.1f}", *core::median(spent_ms)),
           fmt::format("{:.1f}", *std::max_element(spent_ms.begin(), spent_ms.end()))};
@@ -107,7 +107,7 @@ void measure(const Settings& settings) {
     add("true", close_home);
     add("a lie", [&] { return closing_ms(map, lie(world, map), false); });
     add("one taken back", [&] { return withdrawing_ms(map); });
-    map.doubted_loops.push_back(lie(world, map));
+    map.suspended_loops.push_back(lie(world, map));
     add("true", close_home);
   }
   publish(table, settings.csv_file);

@@ -6,14 +6,12 @@
 #include <set>
 #include <utility>
 
+#include "tower.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/pairs/tower.hpp>
 
 namespace samewhere::bench {
 namespace {
-
-using pairs::TowerImage;
 
 constexpr double kOwnMoment_s = 10.0;
 constexpr std::uint64_t kPermutationSeed = 0;
@@ -79,8 +77,7 @@ std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_st
 }
 
 ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {
-  const auto images = std::make_shared<const std::vector<TowerImage>>(
-      pairs::read_tower({.folder = folder, .floors = {}}));
+  const auto images = std::make_shared<const std::vector<TowerImage>>(read_tower(folder));
   std::vector<int> all_queries;
   for (std::size_t i = 0; i < images->size(); ++i) {
     if (!(*images)[i].is_gallery) all_queries.push_back(static_cast<int>(i));

@@ -13,16 +13,16 @@
 #include <opencv2/imgproc.hpp>
 
 #include "impostor_rule.hpp"
+#include "most_alike.hpp"
 #include "orb_matches.hpp"
 #include "program.hpp"
+#include "tower.hpp"
 #include "whole_view.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/grey.hpp>
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/describe/describer.hpp>
-#include <samewhere/pairs/most_alike.hpp>
-#include <samewhere/pairs/tower.hpp>
 #include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
@@ -55,13 +55,9 @@ cv::Mat as_bgr(const cv::Mat& image) {
   return bgr;
 }
 
-bool is_whole_tower(const std::string& name) {
-  return pairs::is_tower(name) && pairs::tower_source(name).floors.empty();
-}
-
 SourceViews view(const std::string& name, MobileNet& mobilenet) {
   pipeline::Config config = pipeline::profile("default");
-  config.source = is_whole_tower(name) ? (std::filesystem::path(name) / "walk.txt").string() : name;
+  config.source = is_tower(name) ? (std::filesystem::path(name) / "walk.txt").string() : name;
   const auto source = run::open_source(config);
   const auto describer = describe::make_describer(config.describe);
   core::Progress progress("looking at " + name, source->info().num_frames);
@@ -128,7 +124,7 @@ std::vector<int> best_impostors(const std::vector<std::vector<float>>& vectors,
   int num_done = 0;
   for (const int query : rule.queries) {
     const auto offered = offered_to(query, rule, static_cast<int>(vectors.size()));
-    const auto shortlist = pairs::most_alike(vectors, query, offered, kShortlist);
+    const auto shortlist = most_alike(vectors, query, offered, kShortlist);
     if (!shortlist.empty()) best.push_back(inliers_of_best(query, shortlist, rule, counts));
     progress.update(++num_done);
   }
@@ -150,8 +146,8 @@ std::string median_of(std::vector<int> best) {
 void measure(const std::string& name, const Options& options, MobileNet& mobilenet, Table& table) {
   const SourceViews views = view(name, mobilenet);
   const std::vector<ImpostorRule> rules =
-      is_whole_tower(name) ? std::vector{tower_rule(name, options.num_tower_queries)}
-                           : rules_of_truth(views.known, options.query_step);
+      is_tower(name) ? std::vector{tower_rule(name, options.num_tower_queries)}
+                     : rules_of_truth(views.known, options.query_step);
   InlierCounts counts(views.orb);
   for (const ImpostorRule& rule : rules) {
     for (const auto& [method, vectors] :

@@ -72,8 +72,7 @@ void Liar::tell_lie(const pipeline::FindLoops& question, pipeline::LoopAnswer& a
     row.verdict = core::LoopClosure{.candidate = row.candidate.id,
                                     .evidence = refused->evidence,
                                     .match_from_query = found,
-                                    .information = information,
-                                    .pairs = {}};
+                                    .information = information};
     answer.loops.push_back({lie_->loop});
     return;
   }

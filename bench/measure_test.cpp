@@ -5,11 +5,11 @@
 #include "impostor_rule.hpp"
 #include "orb_matches.hpp"
 #include "picture_statistics.hpp"
+#include "tower.hpp"
 #include "view_pairs.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/pairs/tower.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -160,7 +160,7 @@ TEST(ImpostorRule, OfTheTowerOtherFloorsAreImpostors) {
                    "image,floor,split,area\na1,f1,gallery,x y\na2,f1,query,x\nb1,f1,gallery,x\n"
                    "c1,f2,gallery,x\n");
   core::write_file(folder / "walk.txt", "a1 f1 a\na2 f1 a\nb1 f1 b\nc1 f2 c\n");
-  ASSERT_TRUE(pairs::is_tower(folder.string()));
+  ASSERT_TRUE(is_tower(folder));
   const ImpostorRule rule = tower_rule(folder, 150);
   EXPECT_THAT(rule.queries, testing::ElementsAre(1));
   EXPECT_EQ(rule.offer(1, 0), Offer::kTakenOut);

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "most_alike.hpp"
 #include <samewhere/core/errors.hpp>
-#include <samewhere/pairs/most_alike.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -36,7 +36,7 @@ std::vector<float> MobileNet::describe(const cv::Mat& bgr) {
                                            cv::Scalar::all(kMiddle), swap_to_rgb));
   const cv::Mat embedding = network_.forward("embedding").reshape(1, 1);
   std::vector<float> vector(embedding.begin<float>(), embedding.end<float>());
-  const float length = std::sqrt(pairs::dot(vector, vector));
+  const float length = std::sqrt(dot(vector, vector));
   if (length > 0.0F) {
     for (float& value : vector) value /= length;
   }

@@ -69,10 +69,10 @@ function(samewhere_plain_folder NAME)
 endfunction()
 
 # samewhere_test(NAME SOURCES file... LINKS target...): one GoogleTest program, whose cases ctest runs and counts one by one.
-# Each case carries NAME as its label. Without SAMEWHERE_TWIN the files that render are left out, and a program of nothing else.
+# Each case carries NAME as its label. Tests of parts that the build leaves out are left out (SamewhereParts.cmake), and a program of nothing else.
 function(samewhere_test NAME)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
-  samewhere_leave_out_rendered(TEST_SOURCES)
+  samewhere_leave_out_tests(TEST_SOURCES)
   if(NOT TEST_SOURCES)
     return()
   endif()

@@ -1,12 +1,10 @@
-// samewhere-train: trains the network that describes a view; `samewhere-train pairs` the one that
-// judges pairs of views. `samewhere train` starts it.
+// samewhere-train: trains the network that describes a view. `samewhere train` starts it.
 
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +12,6 @@
 #include <spdlog/spdlog.h>
 
 #include "options.hpp"
-#include "pairs_command.hpp"
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/progress.hpp>
@@ -32,8 +29,7 @@ constexpr const char* kExamples =
     "  samewhere train --images gallery.txt --out small.onnx --code-size 264 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
     "An interrupted training resumes when the same command is given again. Written beside\n"
-    "FILE.onnx: FILE.json (the card), FILE.checkpoint (until training is complete).\n"
-    "Another network, which judges whether two views show one place: samewhere train pairs --help";
+    "FILE.onnx: FILE.json (the card), FILE.checkpoint (until training is complete).";
 
 // What would be found out only after all images are read, or after hours.
 void check(const Job& job) {
@@ -138,8 +134,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace samewhere;
-  const bool is_of_pairs = argc > 1 && std::string_view(argv[1]) == "pairs";
-  return core::run_program("samewhere", [&] {
-    return is_of_pairs ? train::train_pairs(argc, argv) : train::run(argc, argv);
-  });
+  return core::run_program("samewhere", [&] { return train::run(argc, argv); });
 }

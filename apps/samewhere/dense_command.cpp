@@ -11,6 +11,7 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/folder_lock.hpp>
 #include <samewhere/core/interrupt.hpp>
+#include <samewhere/dense/octree_map.hpp>
 #include <samewhere/run/dense_maps.hpp>
 #include <samewhere/run/run_folder.hpp>
 
@@ -24,6 +25,7 @@ struct DenseCommand {
 };
 
 void execute(const DenseCommand& command) {
+  dense::require_dense_maps();
   core::catch_interrupts();
   const std::filesystem::path run = command.run;
   pipeline::Config config = run::config_of_run(run);

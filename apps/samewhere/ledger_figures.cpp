@@ -49,7 +49,7 @@ void add_geometry(const std::optional<core::GeometryEvidence>& geometry,
               at_least(config.min_spread_ratio));
   figures.add("overlap of the views", found(&Geometry::overlap_ratio));
   figures.add("reprojection error", found(&Geometry::reprojection_rmse_px), " px");
-  const auto apart_m = geometry ? geometry->disagreement_m : std::nullopt;
+  const auto apart_m = geometry ? geometry->pose_difference_m : std::nullopt;
   if (apart_m && std::isinf(*apart_m)) {
     figures.add("distance of the poses of both views", "one view gives no pose");
   } else {
@@ -67,20 +67,20 @@ void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
               at_most(config.max_odometry_chi_square));
 }
 
-std::string text_of(const core::RivalEvidence& rival, const verify::Config& config) {
-  std::string text = fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}",
-                                 rival.frame.index(), rival.apart_m, rival.mahalanobis_squared,
-                                 at_most(config.max_competing_chi_square));
-  if (rival.gain) {
+std::string text_of(const core::CompetingLoopEvidence& loop, const verify::Config& config) {
+  std::string text =
+      fmt::format("frame {}, {:.2f} m away, chi-square {:.4g}{}", loop.frame.index(), loop.apart_m,
+                  loop.mahalanobis_squared, at_most(config.max_competing_chi_square));
+  if (loop.gain) {
     text +=
-        fmt::format("; likelihood gain {:.4g}{}", *rival.gain, at_least(config.min_competing_gain));
+        fmt::format("; likelihood gain {:.4g}{}", *loop.gain, at_least(config.min_competing_gain));
   }
   return text;
 }
 
-std::string text_of(const core::OtherPlaceEvidence& other, const verify::Config& config) {
+std::string text_of(const core::CompetingPlaceEvidence& place, const verify::Config& config) {
   return fmt::format("frame {}, {:.2f} m away, {} inliers (at most {:.0f} % of those here)",
-                     other.frame.index(), other.apart_m, other.num_inliers,
+                     place.frame.index(), place.apart_m, place.num_inliers,
                      100.0 * config.max_competing_place_ratio);
 }
 
@@ -108,8 +108,8 @@ std::vector<report::Figure> figures_of(const core::LedgerRow& row, const verify:
                   : std::string());
   add_geometry(evidence.geometry, config, figures);
   add_odometry(evidence.odometry, config, figures);
-  figures.add("competing hypothesis of the last loop", text(evidence.rival));
-  figures.add("competing hypothesis of another place", text(evidence.other_place));
+  figures.add("competing hypothesis of the last loop", text(evidence.competing_loop));
+  figures.add("competing hypothesis of another place", text(evidence.competing_place));
   figures.add("consecutive views", text(evidence.sequence));
   return figures.taken();
 }

@@ -62,7 +62,7 @@ TEST_F(LedgerCommand, ReplaysWithOtherThresholds) {
   const Outcome strict = run("replay --set verify.min_inliers=80");
   EXPECT_EQ(strict.exit_code, 0) << strict.err;
   EXPECT_THAT(strict.out, HasSubstr("\nChanged:"));
-  EXPECT_THAT(strict.out, HasSubstr("only 60 features agree on one geometry, 80 needed"));
+  EXPECT_THAT(strict.out, HasSubstr("only 60 inliers of one geometry, 80 needed"));
   const Outcome lax = run("replay --set verify.max_odometry_chi_square=500");
   EXPECT_THAT(lax.out, HasSubstr("90 features agree"));
   EXPECT_EQ(run("replay --set verify.nonsense=1").exit_code, 2);

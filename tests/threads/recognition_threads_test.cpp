@@ -20,7 +20,7 @@ namespace samewhere::pipeline {
 namespace {
 
 // Steps that hand on a frame's number and do nothing else.
-RecognitionSteps counting(std::vector<std::uint64_t>& judged) {
+RecognitionSteps counting(std::vector<std::uint64_t>& verified) {
   return {.describe =
               [](const core::Frame& frame) {
                 DescribedFrame described;
@@ -33,9 +33,9 @@ RecognitionSteps counting(std::vector<std::uint64_t>& judged) {
                 searched.described = std::move(described);
                 return searched;
               },
-          .judge =
-              [&judged](const SearchedFrame& frame) {
-                judged.push_back(frame.described.view.frame.index());
+          .verify =
+              [&verified](const SearchedFrame& frame) {
+                verified.push_back(frame.described.view.frame.index());
               }};
 }
 
@@ -50,21 +50,21 @@ NextFrame numbered(std::uint64_t num_frames) {
 TEST(RecognitionThreads, EveryFrameComesToEveryStepInOrder) {
   for (const auto run : {run_in_turn, run_in_threads}) {
     for (const std::uint64_t num_frames : {0, 1, 3, 1000}) {
-      std::vector<std::uint64_t> judged;
-      run(numbered(num_frames), counting(judged));
-      ASSERT_EQ(judged.size(), num_frames);
-      EXPECT_TRUE(std::is_sorted(judged.begin(), judged.end()));
+      std::vector<std::uint64_t> verified;
+      run(numbered(num_frames), counting(verified));
+      ASSERT_EQ(verified.size(), num_frames);
+      EXPECT_TRUE(std::is_sorted(verified.begin(), verified.end()));
     }
   }
 }
 
 TEST(RecognitionThreads, WhatAnyStepThrowsComesOutAndNobodyWaitsForever) {
   for (const auto run : {run_in_turn, run_in_threads}) {
-    std::vector<std::uint64_t> judged;
+    std::vector<std::uint64_t> verified;
     const auto fail_at_7 = [](core::FrameId frame) {
       if (frame.index() == 7) throw core::InputError("no frame 7");
     };
-    const RecognitionSteps plain = counting(judged);
+    const RecognitionSteps plain = counting(verified);
     RecognitionSteps steps = plain;
     steps.describe = [&](const core::Frame& frame) {
       fail_at_7(frame.id);
@@ -78,7 +78,7 @@ TEST(RecognitionThreads, WhatAnyStepThrowsComesOutAndNobodyWaitsForever) {
     };
     EXPECT_THROW(run(numbered(1000), steps), core::InputError);
     steps = plain;
-    steps.judge = [&](const SearchedFrame& frame) { fail_at_7(frame.described.view.frame); };
+    steps.verify = [&](const SearchedFrame& frame) { fail_at_7(frame.described.view.frame); };
     EXPECT_THROW(run(numbered(1000), steps), core::InputError);
     const NextFrame broken = []() -> std::optional<core::Frame> {
       throw core::InputError("cut short");

@@ -128,31 +128,5 @@ TEST_F(TrainProgram, HelpShowsExamples) {
   EXPECT_THAT(help.out, HasSubstr("--learning-rate"));
 }
 
-TEST_F(TrainProgram, PairsAreACommandOfTheirOwn) {
-  const Outcome help = run("train pairs --help");
-  EXPECT_EQ(help.exit_code, 0);
-  EXPECT_THAT(help.out, testing::AllOf(HasSubstr("samewhere train pairs"), HasSubstr("--validate"),
-                                       HasSubstr("--hidden-pictures")));
-  EXPECT_THAT(run("train --help").out, HasSubstr("samewhere train pairs --help"));
-}
-
-TEST_F(TrainProgram, WhatPairsCannotBeMadeOfIsNamed) {
-  const std::string out = " --out " + quoted(path("pairs.onnx"));
-  const std::string hotel = "train pairs 'twin:hotel?seed=3' ";
-  expect_clear_error(hotel + out, {"--validate", "samewhere train pairs --help"});
-  expect_clear_error(hotel + "--validate 'twin:hotel?seed=3&similarity=0.9'" + out,
-                     {"twin:hotel?seed=3&similarity=0.9", "is learnt from, too"});
-  expect_clear_error(hotel + "--validate 'twin:hotel?seed=4' --step 0" + out, {"--step 0"});
-  expect_clear_error(hotel + "--validate 'twin:hotel?seed=4' --out pairs.txt", {"pairs.txt"});
-  write_photos(3);
-  expect_clear_error(
-      "train pairs " + quoted(path("photos")) + " --validate 'twin:hotel?seed=4'" + out,
-      {"says nothing about places"});
-  folder_.write("kept", "a shopping list");
-  expect_clear_error(
-      hotel + "--validate 'twin:hotel?seed=4' --prepared " + quoted(path("kept")) + out,
-      {"kept", "no file of prepared pairs"});
-}
-
 }  // namespace
 }  // namespace samewhere::test

@@ -29,7 +29,6 @@ struct Frame {
   std::vector<cv::Mat> images;  // one per camera; 8-bit grey or BGR, rows x columns
   std::optional<cv::Mat>
       depth_m;  // of camera 0, same size, 32-bit float metres along the optical axis, 0 = unknown
-  std::optional<double> exposure_s;
   std::vector<ImuSample> imu_since_last;
   // Of a live source: how many came between the frame before and this one and were not given,
   // because a newer one was there.

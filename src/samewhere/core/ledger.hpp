@@ -6,13 +6,13 @@
 
 namespace samewhere::core {
 
-// One judged candidate. A later verdict on the same candidate is a further row.
+// One verified candidate. A later verdict on the same candidate is a further row.
 struct LedgerRow {
   Candidate candidate;
   Verdict verdict;
 };
 
-// Every candidate ever judged, in the order of the judgements.
+// All verified candidates, in the order of their verdicts.
 using Ledger = std::vector<LedgerRow>;
 
 }  // namespace samewhere::core

@@ -5,6 +5,22 @@
 
 namespace samewhere::core {
 
+std::string_view name_of(Origin origin) {
+  switch (origin) {
+    case Origin::kRetrieved:
+      return "retrieved";
+    case Origin::kVisualWords:
+      return "visual words";
+    case Origin::kNeighbour:
+      return "neighbour";
+    case Origin::kPredicted:
+      return "predicted";
+    case Origin::kRelocalization:
+      return "relocalization";
+  }
+  throw ContractError("promise broken: every Origin has a name");
+}
+
 std::string_view name_of(Refusal refusal) {
   switch (refusal) {
     case Refusal::kSimilarity:
@@ -19,12 +35,12 @@ std::string_view name_of(Refusal refusal) {
       return "spread";
     case Refusal::kPose:
       return "pose";
-    case Refusal::kAgreement:
-      return "agreement";
+    case Refusal::kConsistency:
+      return "consistency";
     case Refusal::kOdometry:
       return "odometry";
-    case Refusal::kRival:
-      return "rival";
+    case Refusal::kCompeting:
+      return "competing";
     case Refusal::kSequence:
       return "sequence";
     case Refusal::kGraph:
@@ -33,10 +49,6 @@ std::string_view name_of(Refusal refusal) {
       return "withdrawn";
   }
   throw ContractError("promise broken: every Refusal has a name");
-}
-
-CandidateId candidate_of(const Verdict& verdict) {
-  return std::visit([](const auto& v) { return v.candidate; }, verdict);
 }
 
 const Evidence& evidence_of(const Verdict& verdict) {
@@ -66,11 +78,12 @@ std::string reason_for(const LoopClosure& loop) {
                         evidence.geometry->num_inliers, evidence.geometry->reprojection_rmse_px);
   if (evidence.sequence)
     reason += fmt::format("; {} consecutive views match", evidence.sequence->num_views);
-  if (loop.overruled.is_valid() && evidence.rival && evidence.rival->gain)
+  if (loop.overruled.is_valid() && evidence.competing_loop && evidence.competing_loop->gain)
     reason += fmt::format(
         "; replaces the competing hypothesis of the last loop, the place of frame {} at {:.2f} m: "
         "odometry supports this loop rather than its first one (gain {:.1f})",
-        evidence.rival->frame.index(), evidence.rival->apart_m, *evidence.rival->gain);
+        evidence.competing_loop->frame.index(), evidence.competing_loop->apart_m,
+        *evidence.competing_loop->gain);
   return reason;
 }
 

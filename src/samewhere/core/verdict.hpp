@@ -4,28 +4,38 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include <samewhere/core/ids.hpp>
 #include <samewhere/core/rigid3.hpp>
 
 namespace samewhere::core {
 
-// Two views that look alike, found by appearance only, or by what their features vote for, or,
-// foretold, because the views before them or beside them matched: neither of these two may prove a
-// sequence, for they were looked for because they fit. Of a lost view: if the judge accepts it, it
-// is a place where the view may have been taken, and no loop.
+// How a candidate was proposed.
+enum class Origin {
+  kRetrieved,      // by the similarity of the global descriptors
+  kVisualWords,    // by the bag of visual words
+  kNeighbour,      // near the best match of the same query; no evidence for a sequence
+  kPredicted,      // the next pair of a sequence; no evidence for this sequence
+  kRelocalization  // retrieved for the view of a LOST frame: an accepted one is a place, not a loop
+};
+
+inline constexpr Origin kAllOrigins[] = {Origin::kRetrieved, Origin::kVisualWords,
+                                         Origin::kNeighbour, Origin::kPredicted,
+                                         Origin::kRelocalization};
+
+// "retrieved", "visual words", "neighbour", "predicted" or "relocalization": as in loops.json.
+std::string_view name_of(Origin origin);
+
+// Two views that may show the same place.
 struct Candidate {
   CandidateId id;
   FrameId query;
   FrameId match;            // older than query
   double similarity = 0.0;  // of the two descriptors, in [-1, 1]
-  bool is_foretold = false;
-  bool is_lost = false;
-  bool is_by_features = false;
+  Origin origin = Origin::kRetrieved;
 };
 
-// What geometry says about a candidate.
+// Geometric verification of a candidate.
 struct GeometryEvidence {
   int num_matches = 0;  // feature matches offered to RANSAC
   // With a pose: matches that were searched again where it projects the points, often more. 0: were
@@ -39,50 +49,52 @@ struct GeometryEvidence {
   double reprojection_rmse_px = 0.0;  // of the inliers
   // Body of the match from body of the query; none without depth.
   std::optional<Sim3> match_from_query;
-  // How far the pose found from the query's depth is from that found from the match's depth; none
+  // Pose consistency: the pose from the query's depth against that from the match's depth; none
   // where only one of them has depth.
-  std::optional<double> disagreement_m;
-  std::optional<double> disagreement_rad;
+  std::optional<double> pose_difference_m;
+  std::optional<double> pose_difference_rad;
 };
 
-// What the odometry since the match says about the relative pose that geometry found.
+// Odometry gate: the correction that the candidate's relative pose asks for.
 struct OdometryEvidence {
-  double correction_m = 0.0;    // how far the loop moves the query
-  double correction_rad = 0.0;  //
-  // Of the correction under the drift model; chi-square with 6 degrees of freedom. Without depth,
-  // of what is left of it once the scale has crept as the candidate says.
+  double correction_m = 0.0;    // of the query's position
+  double correction_rad = 0.0;  // of its rotation
+  // Of the correction under the accumulated drift since the match; chi-square with 6 degrees of
+  // freedom. Without depth the scale drift that the candidate implies is taken out first.
   double mahalanobis_squared = 0.0;
 };
 
-// The place where an earlier loop has put the query, and how far from there this one would put it.
-struct RivalEvidence {
-  FrameId frame;  // shows that place
+// Competing hypothesis of an earlier loop: where it has put the query, and how far from there this
+// candidate would put it.
+struct CompetingLoopEvidence {
+  FrameId frame;  // the match of that loop
   double apart_m = 0.0;
   double apart_rad = 0.0;
   double mahalanobis_squared = 0.0;  // under the drift since that loop; 6 degrees of freedom
-  // Of the loops that contradict this one: the first, and how much likelier than that one odometry
-  // makes this one (docs/decisions/023; twice a logarithm). Not measured if it cannot tell.
+  // The first of the loops that contradict this candidate, and the log-likelihood ratio of the
+  // candidate over it, times two, under odometry (docs/decisions/023). Empty where it was not
+  // measured.
   CandidateId first_loop = {};
   std::optional<double> gain = {};
 };
 
-// Another place that the same view may show as well, and that the map knows to be another one: of
-// these the one with most inliers.
-struct OtherPlaceEvidence {
-  FrameId frame;  // shows that place
+// Competing hypothesis of the same query: of its candidates at another place that pass all checks
+// the one with most inliers.
+struct CompetingPlaceEvidence {
+  FrameId frame;  // the match of that candidate
   int num_inliers = 0;
-  double apart_m = 0.0;  // how far it would put the query from where this place would
+  double apart_m = 0.0;  // between the query's poses by both candidates
   double apart_rad = 0.0;
 };
 
-// What the views around the query say: whether they go on to match the views around the match.
-// Views are counted by what they show, so a camera that stands still sees one.
+// Sequence of views around the candidate, whose queries match the views around its match. Views are
+// counted by their content: a camera that stands still sees one.
 struct SequenceEvidence {
   int query_view = 0;
   int match_view = 0;
   int num_views = 0;     // of the longest sequence through the candidate, as far as it is known
   int num_inliers = 0;   // of all of this sequence together
-  bool is_over = false;  // has waited long enough
+  bool is_over = false;  // has been pending for verify.max_pending_views
 };
 
 // Everything measured about one candidate. A part that was not measured is absent.
@@ -90,14 +102,14 @@ struct Evidence {
   double similarity = 0.0;
   std::optional<GeometryEvidence> geometry;
   std::optional<OdometryEvidence> odometry;
-  std::optional<RivalEvidence> rival;
-  std::optional<OtherPlaceEvidence> other_place;
+  std::optional<CompetingLoopEvidence> competing_loop;
+  std::optional<CompetingPlaceEvidence> competing_place;
   std::optional<SequenceEvidence> sequence;
 };
 
-// Where in the funnel a candidate was refused, in the order of the checks. kGraph: the judge had
-// accepted it, but it does not go with odometry and the loops before it; kWithdrawn: nor with those
-// after it.
+// The checks, in their order; the first that fails decides. kGraph: accepted by the loop verifier,
+// but rejected by the robust pose graph together with odometry and the loops before; kWithdrawn:
+// contradicted by a later loop.
 enum class Refusal {
   kSimilarity,
   kPause,
@@ -105,26 +117,20 @@ enum class Refusal {
   kInliers,
   kSpread,
   kPose,
-  kAgreement,
+  kConsistency,
   kOdometry,
-  kRival,
+  kCompeting,
   kSequence,
   kGraph,
   kWithdrawn
 };
 
 inline constexpr Refusal kAllRefusals[] = {
-    Refusal::kSimilarity, Refusal::kPause,    Refusal::kMatches,   Refusal::kInliers,
-    Refusal::kSpread,     Refusal::kPose,     Refusal::kAgreement, Refusal::kOdometry,
-    Refusal::kRival,      Refusal::kSequence, Refusal::kGraph,     Refusal::kWithdrawn};
+    Refusal::kSimilarity, Refusal::kPause,    Refusal::kMatches,     Refusal::kInliers,
+    Refusal::kSpread,     Refusal::kPose,     Refusal::kConsistency, Refusal::kOdometry,
+    Refusal::kCompeting,  Refusal::kSequence, Refusal::kGraph,       Refusal::kWithdrawn};
 
 std::string_view name_of(Refusal refusal);
-
-// A feature of the query and the feature of the match that shows the same point.
-struct FeaturePair {
-  int query_feature = 0;
-  int match_feature = 0;
-};
 
 // The two views show the same place.
 struct LoopClosure {
@@ -134,13 +140,12 @@ struct LoopClosure {
       match_from_query;  // none: counted as a loop, but adds no edge (profile paper without a pose)
   bool scale_is_free = false;  // monocular: the scale of match_from_query was estimated
   Matrix6d information = Matrix6d::Identity();  // of match_from_query, order [m; rad]
-  std::vector<FeaturePair> pairs;
-  bool is_by_hand = false;  // a person said so, whatever the judge
-  // Valid: that loop and those after it put the camera elsewhere, and odometry speaks against them.
+  bool is_by_hand = false;  // accepted by `ledger force`, whatever the verifier decided
+  // Valid: that loop and those after it contradict this one and are less likely under odometry.
   CandidateId overruled = {};
 };
 
-// The two views only look alike, or nothing proves that they do not.
+// A check failed.
 struct Rejection {
   CandidateId candidate;
   Evidence evidence;
@@ -148,7 +153,7 @@ struct Rejection {
   std::string reason;  // one sentence with the figure and the threshold
 };
 
-// Cannot tell, or not yet: the views that follow decide.
+// Undecided, or pending: the views that follow decide.
 struct Ambiguous {
   CandidateId candidate;
   Evidence evidence;
@@ -158,7 +163,6 @@ struct Ambiguous {
 
 using Verdict = std::variant<LoopClosure, Rejection, Ambiguous>;
 
-CandidateId candidate_of(const Verdict& verdict);
 const Evidence& evidence_of(const Verdict& verdict);
 bool is_loop(const Verdict& verdict);
 // "LOOP", "NOT" or "AMBIGUOUS": the words of loops.json.

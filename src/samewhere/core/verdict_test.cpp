@@ -27,7 +27,6 @@ TEST(Verdict, ANoNamesItsStageAndItsReason) {
   EXPECT_EQ(name_of(verdict), "NOT");
   EXPECT_EQ(stage_of(verdict), "inliers");
   EXPECT_EQ(reason_of(verdict), "9 inliers, 15 needed");
-  EXPECT_EQ(candidate_of(verdict), CandidateId(4));
   EXPECT_EQ(evidence_of(verdict).similarity, 0.7);
   EXPECT_FALSE(is_loop(verdict));
 }

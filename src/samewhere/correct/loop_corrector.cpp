@@ -4,8 +4,8 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/correct/loop_corrector.hpp>
-#include <samewhere/optimize/lay_out.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::correct {
 namespace {
@@ -23,7 +23,7 @@ optimize::PoseEdge as_edge(const LoopEdge& loop, const optimize::Config& config)
           1.0 / (config.loop_scale_sigma * config.loop_scale_sigma)};
 }
 
-// Odometry saw both in one scale, and what came since is counted.
+// Odometry measured both in one scale; log_scale has the corrections since.
 optimize::PoseEdge odometry_edge(const MapVersion& map, const scene::Keyframe& keyframe,
                                  const optimize::Config& config) {
   const core::KeyframeId parent = keyframe.odometry->parent;
@@ -48,20 +48,20 @@ std::vector<scene::PoseChange> moves_to(const MapVersion& map, const optimize::P
   return moves;
 }
 
-// The overruled loop and those that came after it, on the path or in time.
-std::vector<LoopEdge> suspects_of(const MapVersion& map, core::CandidateId overruled) {
+// The overruled loop and those that may depend on it: later queries, and loops closed since.
+std::vector<LoopEdge> dependent_loops(const MapVersion& map, core::CandidateId overruled) {
   const auto first = std::find_if(map.loops.begin(), map.loops.end(),
                                   [&](const LoopEdge& known) { return known.cause == overruled; });
-  std::vector<LoopEdge> suspects;
-  if (first == map.loops.end()) return suspects;
-  std::copy_if(map.loops.begin(), map.loops.end(), std::back_inserter(suspects),
+  std::vector<LoopEdge> dependent;
+  if (first == map.loops.end()) return dependent;
+  std::copy_if(map.loops.begin(), map.loops.end(), std::back_inserter(dependent),
                [&](const LoopEdge& known) {
                  return known.closed_at >= first->closed_at || known.query >= first->query;
                });
-  return suspects;
+  return dependent;
 }
 
-// As if nobody had ever believed them.
+// The map with these loops withdrawn.
 MapVersion without(const MapVersion& map, const std::vector<LoopEdge>& loops) {
   if (loops.empty()) return map;
   scene::Edit edit;
@@ -69,36 +69,37 @@ MapVersion without(const MapVersion& map, const std::vector<LoopEdge>& loops) {
   return apply(map, edit);
 }
 
-// Loops that the map does not believe yet: the doubted ones and the new one, which is the last.
-std::vector<LoopEdge> claims_of(const MapVersion& map, const LoopEdge& loop) {
-  std::vector<LoopEdge> claims;
-  for (const auto& doubted : map.doubted_loops)
-    if (const auto claim = between_holders(map, doubted)) claims.push_back(*claim);
-  claims.push_back(loop);
-  return claims;
+// Loops to be tested: the suspended ones and, as the last, the new one.
+std::vector<LoopEdge> loops_to_test(const MapVersion& map, const LoopEdge& loop) {
+  std::vector<LoopEdge> loops;
+  for (const auto& suspended : map.suspended_loops)
+    if (const auto edge = between_holders(map, suspended)) loops.push_back(*edge);
+  loops.push_back(loop);
+  return loops;
 }
 
-// What the graph says of loops whose edges stand one after the other in it.
-struct Answer {
-  std::vector<LoopEdge> believed;
-  std::vector<BentLoop> bent;
+// Loops by their weight in the solved graph.
+struct TestedLoops {
+  std::vector<LoopEdge> accepted;
+  std::vector<OutlierLoop> outliers;
 };
 
-Answer answer_on(const std::vector<LoopEdge>& loops, std::size_t first_edge,
-                 const optimize::PoseGraph& graph, const optimize::PoseGraphSummary& summary) {
-  Answer answer;
+// Of loops whose edges are consecutive in the graph.
+TestedLoops tested(const std::vector<LoopEdge>& loops, std::size_t first_edge,
+                   const optimize::PoseGraph& graph, const optimize::PoseGraphSummary& summary) {
+  TestedLoops result;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (summary.weights[first_edge + i] > 0.0) {
-      answer.believed.push_back(loops[i]);
+      result.accepted.push_back(loops[i]);
     } else {
-      answer.bent.push_back({loops[i], chi2_of(graph, graph.edges[first_edge + i])});
+      result.outliers.push_back({loops[i], chi2_of(graph, graph.edges[first_edge + i])});
     }
   }
-  return answer;
+  return result;
 }
 
-bool is_of(const std::vector<BentLoop>& bent, core::CandidateId cause) {
-  return !bent.empty() && bent.back().loop.cause == cause;
+bool is_last(const std::vector<OutlierLoop>& outliers, core::CandidateId cause) {
+  return !outliers.empty() && outliers.back().loop.cause == cause;
 }
 
 }  // namespace
@@ -139,45 +140,47 @@ scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {
 
 namespace {
 
-// As solve_poses, of a map that has lost a loop. That had bent the poses, and from there a solver
-// may not find back; where odometry leads, it was never there. Whichever start ends better.
+// As solve_poses, of a map without a withdrawn loop, which had distorted the poses. Solved from the
+// poses and from a spanning tree of odometry, which does not depend on that loop; the solution with
+// the lower robust cost is taken.
 scene::Edit solve_poses_without(const MapVersion& map, const optimize::Config& config) {
-  optimize::PoseGraph bent = pose_graph_of(map, config);
-  optimize::PoseGraph laid_out = bent;
-  optimize::lay_out(laid_out);
-  const double cost_of_bent = optimize::solve_pose_graph(bent, config).robust_cost;
-  const bool is_better = optimize::solve_pose_graph(laid_out, config).robust_cost < cost_of_bent;
+  optimize::PoseGraph from_poses = pose_graph_of(map, config);
+  optimize::PoseGraph from_tree = from_poses;
+  optimize::place_by_spanning_tree(from_tree);
+  const double cost_from_poses = optimize::solve_pose_graph(from_poses, config).robust_cost;
+  const bool is_tree_better =
+      optimize::solve_pose_graph(from_tree, config).robust_cost < cost_from_poses;
   scene::Edit edit;
-  edit.pose_changes = moves_to(map, is_better ? laid_out : bent);
+  edit.pose_changes = moves_to(map, is_tree_better ? from_tree : from_poses);
   return edit;
 }
 
-Closing close_among_known(const MapVersion& map, const LoopEdge& loop,
-                          const optimize::Config& config) {
+Closing solve_with_new_loop(const MapVersion& map, const LoopEdge& loop,
+                            const optimize::Config& config) {
   optimize::PoseGraph graph = pose_graph_of(map, config);
   const std::size_t num_before = graph.edges.size();
-  const std::vector<LoopEdge> claims = claims_of(map, loop);
-  for (const auto& claim : claims) {
-    graph.edges.push_back(as_edge(claim, config));
-    graph.edges.back().is_doubted = claim.cause != loop.cause;
+  const std::vector<LoopEdge> loops = loops_to_test(map, loop);
+  for (const auto& edge : loops) {
+    graph.edges.push_back(as_edge(edge, config));
+    graph.edges.back().is_suspended = edge.cause != loop.cause;
   }
   const optimize::PoseGraphSummary summary = solve_pose_graph(graph, config);
 
-  const Answer on_claims = answer_on(claims, num_before, graph, summary);
+  const TestedLoops of_new = tested(loops, num_before, graph, summary);
   Closing closing;
-  closing.believed = on_claims.believed;
-  if (is_of(on_claims.bent, loop.cause)) {
-    closing.refused = on_claims.bent.back();
-    closing.edit.doubted_loops.push_back(loop);
+  closing.accepted = of_new.accepted;
+  if (is_last(of_new.outliers, loop.cause)) {
+    closing.rejected = of_new.outliers.back();
+    closing.edit.suspended_loops.push_back(loop);
   }
-  if (closing.believed.empty()) return closing;  // nothing speaks against what was believed
-  closing.withdrawn = answer_on(map.loops, num_before - map.loops.size(), graph, summary).bent;
-  for (const auto& bent : closing.withdrawn) {
-    closing.edit.withdrawn_loops.push_back(bent.loop.cause);
-    closing.edit.doubted_loops.push_back(bent.loop);
+  if (closing.accepted.empty()) return closing;  // nothing contradicts the loops of the map
+  closing.withdrawn = tested(map.loops, num_before - map.loops.size(), graph, summary).outliers;
+  for (const auto& outlier : closing.withdrawn) {
+    closing.edit.withdrawn_loops.push_back(outlier.loop.cause);
+    closing.edit.suspended_loops.push_back(outlier.loop);
   }
-  closing.edit.loops = closing.believed;
-  // a withdrawn loop takes with it what bundles found while it was there
+  closing.edit.loops = closing.accepted;
+  // withdrawal also drops results of bundle adjustment since the loop
   closing.edit.pose_changes =
       closing.withdrawn.empty()
           ? moves_to(map, graph)
@@ -185,16 +188,16 @@ Closing close_among_known(const MapVersion& map, const LoopEdge& loop,
   return closing;
 }
 
-// Those that contradict where the keyframes are.
-std::vector<BentLoop> bent_in(const MapVersion& map, const std::vector<LoopEdge>& loops,
-                              const optimize::Config& config) {
+// Loops that do not fit the poses of the map.
+std::vector<OutlierLoop> find_outliers(const MapVersion& map, const std::vector<LoopEdge>& loops,
+                                       const optimize::Config& config) {
   const optimize::PoseGraph graph = pose_graph_of(map, config);
-  std::vector<BentLoop> bent;
+  std::vector<OutlierLoop> outliers;
   for (const auto& loop : loops) {
     const double chi2 = chi2_of(graph, as_edge(loop, config));
-    if (chi2 > config.loop_chi2) bent.push_back({loop, chi2});
+    if (chi2 > config.loop_chi2) outliers.push_back({loop, chi2});
   }
-  return bent;
+  return outliers;
 }
 
 }  // namespace
@@ -204,20 +207,20 @@ Closing close_loop(const MapVersion& map, const LoopEdge& loop, const optimize::
   core::require(loop.cause.is_valid(), "a loop that is closed has a cause");
   core::require(is_live(map.at(loop.query)) && is_live(map.at(loop.match)),
                 "a loop that is closed joins live keyframes");
-  const std::vector<LoopEdge> suspects = suspects_of(map, overruled);
-  if (suspects.empty()) return close_among_known(map, loop, config);
+  const std::vector<LoopEdge> dependent = dependent_loops(map, overruled);
+  if (dependent.empty()) return solve_with_new_loop(map, loop, config);
 
-  const MapVersion standing = without(map, suspects);
-  Closing closing = close_among_known(standing, loop, config);
-  if (closing.refused) {  // the others were asked for its sake alone
-    Closing nothing;
-    nothing.refused = closing.refused;
-    nothing.edit.doubted_loops = {loop};
-    return nothing;
+  const MapVersion rest = without(map, dependent);
+  Closing closing = solve_with_new_loop(rest, loop, config);
+  if (closing.rejected) {  // suspended loops accepted without the overruled one do not count
+    Closing unchanged;
+    unchanged.rejected = closing.rejected;
+    unchanged.edit.suspended_loops = {loop};
+    return unchanged;
   }
-  for (const auto& bent : bent_in(apply(standing, closing.edit), suspects, config)) {
-    closing.edit.withdrawn_loops.push_back(bent.loop.cause);
-    closing.withdrawn.push_back(bent);
+  for (const auto& outlier : find_outliers(apply(rest, closing.edit), dependent, config)) {
+    closing.edit.withdrawn_loops.push_back(outlier.loop.cause);
+    closing.withdrawn.push_back(outlier);
   }
   closing.edit.pose_changes.clear();
   closing.edit.pose_changes = solve_poses_without(apply(map, closing.edit), config).pose_changes;

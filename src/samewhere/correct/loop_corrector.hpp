@@ -8,50 +8,51 @@
 
 namespace samewhere::correct {
 
-// Keyframes as nodes, by position, joined by their odometry and by the loops that the map believes.
-// Culled keyframes hang on no edge. Of a camera without depth, a graph with scales.
+// Pose graph of the map: keyframes as nodes, by position, with odometry edges and the accepted loop
+// edges. Culled keyframes have no edge. Of a camera without depth, a graph with scales.
 optimize::PoseGraph pose_graph_of(const scene::MapVersion& map, const optimize::Config& config);
 
-// The same loop between the keyframes that its own two hang on by now. Nothing if both hang on one.
+// The same loop between the holders (scene::holder_of) of its two keyframes. Nothing if both have
+// the same holder.
 std::optional<scene::LoopEdge> between_holders(const scene::MapVersion& map,
                                                const scene::LoopEdge& loop);
 
-// A loop that the pose graph does not believe.
-struct BentLoop {
+// A loop that the robust pose graph rejects.
+struct OutlierLoop {
   scene::LoopEdge loop;
-  double chi2 = 0.0;  // 6 degrees of freedom; beyond optimize::Config::loop_chi2
+  double chi2 = 0.0;  // squared error in variances, 6 degrees of freedom
 };
 
-// What a new loop changes.
+// Effects of a new loop.
 struct Closing {
   scene::Edit edit;
-  std::vector<scene::LoopEdge> believed;  // from now on: the new one, doubted ones. To be fused.
-  std::optional<BentLoop> refused;        // the new one, if it is not among them
-  std::vector<BentLoop> withdrawn;        // believed until now
+  std::vector<scene::LoopEdge> accepted;  // the new one, suspended ones; not fused yet
+  std::optional<OutlierLoop> rejected;    // the new one, if it is not accepted
+  std::vector<OutlierLoop> withdrawn;     // accepted before
 };
 
-// The edit that adds the loop edge and moves every keyframe to where odometry, bettered by bundles,
-// and all loops fit best. The first keyframe stays; culled ones move with those that they hang on.
-// A loop that the pose graph does not believe (optimize/) is kept as a doubted one, and asked again
-// with every new loop: of two that contradict each other, nobody knows which one lies until a third
-// speaks. So a new loop may be refused, which moves nothing, and an older one withdrawn with all
-// that it caused, in the same edit. Only losses kGnc and kGncEach refuse or withdraw (overruled
-// ones go under any). Throws ContractError if the loop has no cause, or names keyframes that are
-// not there or not live (between_holders() answers with live ones). `overruled`: a loop of the map
-// against which odometry speaks for the new one. That, those later on the path and those believed
-// since, which may rest on it, are not in the graph that is solved: who fits it then
-// (Config::loop_chi2) stays, who does not is withdrawn for good, and not doubted. If the new one is
-// refused without them, nothing changes. Ignored if the map no longer believes that loop.
+// The edit that adds the loop edge and moves every keyframe to the solution of the pose graph of
+// odometry (refined by bundle adjustment) and loop edges. The first keyframe stays; culled ones
+// move with their holders. A loop that the robust pose graph rejects (optimize/) is suspended and
+// tested again with every new loop: which one of two contradicting loops is false, only a third one
+// shows. So a new loop may be rejected, which moves nothing, and an older one withdrawn with all
+// that it caused, in the same edit. Only losses kGnc and kGncEach reject or withdraw (overruled
+// loops are withdrawn under any). `overruled`: a loop of the map that odometry rejects in favour of
+// the new one. It, loops with a later query and loops accepted since, which may depend on it, are
+// left out of the graph. Those that fit the solution (Config::loop_chi2) stay; the others are
+// withdrawn for good, and not suspended. If the new one is rejected without them, nothing changes.
+// Ignored if the map no longer has that loop. Throws ContractError if the loop has no cause, or
+// names keyframes that are not in the map or not live (between_holders() returns live ones).
 Closing close_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                    const optimize::Config& config, core::CandidateId overruled = {});
 
-// The edit that moves every keyframe to where odometry and the loops of the map fit best.
+// The edit that moves every keyframe to the solution of the pose graph of the map.
 scene::Edit solve_poses(const scene::MapVersion& map, const optimize::Config& config);
 
-// The edit that takes a loop of the map back with all that it caused, and moves every keyframe to
-// where odometry and the other loops fit best. Landmarks that were seen or merged later because the
-// loop was there, without being caused by it, are left to map::part_places(). Throws ContractError
-// for a cause of no loop of the map, believed or doubted.
+// The edit that withdraws a loop of the map with all that it caused, and moves every keyframe to
+// the solution of the pose graph without it. Observations and merges that the loop made possible
+// without being their cause are left to map::part_places(). Throws ContractError for a cause of no
+// loop of the map, accepted or suspended.
 scene::Edit withdraw_loop(const scene::MapVersion& map, core::CandidateId cause,
                           const optimize::Config& config);
 

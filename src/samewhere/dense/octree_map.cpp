@@ -13,6 +13,8 @@ constexpr double kHalfWidth_voxels = 32768.0;  // of a tree with 16 levels
 
 }  // namespace
 
+void require_dense_maps() {}
+
 struct OctreeMap::Tree {
   Tree(double voxel_m, double max_depth_m)
       : octree(voxel_m), max_reach_m(kHalfWidth_voxels * voxel_m - 2.0 * max_depth_m) {}

@@ -11,10 +11,15 @@
 
 namespace samewhere::dense {
 
+// Throws InputError that names the option if the program was built without dense maps, that is
+// without OctoMap (-DSAMEWHERE_DENSE=OFF).
+void require_dense_maps();
+
 // Free, occupied and unknown space in 3D: the OctoMap of Hornung et al. (Autonomous Robots 2013),
 // by its library.
 class OctreeMap {
  public:
+  // Throws InputError as require_dense_maps().
   explicit OctreeMap(const Config& config);
   OctreeMap(const OctreeMap&) = delete;
   OctreeMap& operator=(const OctreeMap&) = delete;

@@ -25,6 +25,7 @@ struct Config {
   int full_bundle_observations = 400;
   int full_bundle_observations_without_depth = 100;
   int full_bundle_max_observations = 300000;
+  int full_bundle_min_observations = 20;
   int full_bundle_after_keyframes = 5;
   int full_bundle_pace = 4000;
   int cull_after_keyframes = 3;
@@ -121,6 +122,15 @@ inline void visit_full_bundle_fields(Config& config, core::FieldVisitor& visit) 
          .max = 10000000});
 }
 
+// Which keyframes full bundle adjustment leaves out.
+inline void visit_full_bundle_window_fields(Config& config, core::FieldVisitor& visit) {
+  visit("full_bundle_min_observations", config.full_bundle_min_observations,
+        {.help = "least observations of a keyframe in full bundle adjustment",
+         .min = 1,
+         .max = 10000,
+         .is_expert = true});
+}
+
 // How both are bettered, and which go again.
 inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
   visit("bundle_keyframes", config.bundle_keyframes,
@@ -180,6 +190,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit_landmark_fields(config, visit);
   visit_refinement_fields(config, visit);
   visit_full_bundle_fields(config, visit);
+  visit_full_bundle_window_fields(config, visit);
   visit_schedule_fields(config, visit);
   visit_known_fields(config, visit);
 }

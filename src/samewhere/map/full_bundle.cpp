@@ -15,8 +15,6 @@ using core::KeyframeId;
 using core::LandmarkId;
 using scene::MapVersion;
 
-constexpr int kMinObservations = 20;  // fewer hold a keyframe badly
-
 // Those that many keyframes see, and from near by: far points hold directions alone.
 std::vector<LandmarkId> most_telling_first(const MapVersion& map) {
   std::vector<std::pair<double, LandmarkId>> ranked;
@@ -158,7 +156,7 @@ BundleWindow window_of_all(const MapVersion& map, const Config& config) {
   Choice choice = choose_landmarks(map, config);
   BundleWindow window;
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
-    if (is_live(map.keyframes[i]) && choice.num_seen[i] >= kMinObservations)
+    if (is_live(map.keyframes[i]) && choice.num_seen[i] >= config.full_bundle_min_observations)
       window.free.push_back(map.keyframes[i].id);
   }
   const std::size_t num_fixed = is_without_depth(map) ? 2 : 1;

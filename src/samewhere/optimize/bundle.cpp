@@ -7,7 +7,6 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr int kMinObservations = 12;             // that hold a camera; three points are its freedom
 constexpr std::ptrdiff_t kMaxDenseCameras = 60;  // beyond, the reduced system is mostly zeros
 
 BundleResidual residual(const BundleState& state, const BundleObservation& o) {
@@ -23,7 +22,8 @@ std::vector<bool> inliers(const BundleState& state) {
   return are_inliers;
 }
 
-// What has any reprojection: at first nothing else is out, since poses are still wrong.
+// Points in front of the camera: the first round has no other outliers, since poses are still
+// wrong.
 std::vector<bool> visible(const BundleState& state) {
   std::vector<bool> are_visible;
   for (const auto& o : state.problem->observations)
@@ -31,7 +31,7 @@ std::vector<bool> visible(const BundleState& state) {
   return are_visible;
 }
 
-// Leaves out the points that the used observations do not fix: it takes one with depth, or two.
+// Leaves out points that the used observations do not determine: one with depth does, or two.
 std::vector<bool> of_supported_points(const BundleProblem& problem, std::vector<bool> is_used) {
   std::vector<int> support(problem.points_in_world.size(), 0);
   const auto& observations = problem.observations;
@@ -46,16 +46,17 @@ std::vector<bool> of_supported_points(const BundleProblem& problem, std::vector<
   return is_used;
 }
 
-// A camera that hardly any observation holds would slide anywhere: it goes back to where it was and
-// sits out.
-std::vector<bool> of_held_cameras(BundleState& state, std::vector<bool> is_used) {
+// Leaves out cameras with too few used observations, which do not determine the pose; they keep
+// their initial pose.
+std::vector<bool> of_held_cameras(BundleState& state, std::vector<bool> is_used,
+                                  int min_observations) {
   const auto& cameras = state.problem->cameras;
   const auto& observations = state.problem->observations;
   std::vector<int> num_used(cameras.size(), 0);
   for (std::size_t i = 0; i < observations.size(); ++i)
     num_used[static_cast<std::size_t>(observations[i].camera)] += is_used[i] ? 1 : 0;
   const auto is_held = [&](std::size_t camera) {
-    return cameras[camera].is_fixed || num_used[camera] >= kMinObservations;
+    return cameras[camera].is_fixed || num_used[camera] >= min_observations;
   };
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
     if (!is_held(camera)) state.camera_from_world[camera] = cameras[camera].camera_from_world;
@@ -72,11 +73,11 @@ void check(const BundleProblem& problem) {
   };
   core::require(std::any_of(problem.cameras.begin(), problem.cameras.end(),
                             [](const BundleCamera& camera) { return camera.is_fixed; }),
-                "a bundle has a fixed camera that holds it in place");
+                "a bundle adjustment has a fixed camera");
   for (const auto& o : problem.observations) {
     core::require(is_position(o.camera, problem.cameras.size()) &&
                       is_position(o.point, problem.points_in_world.size()),
-                  "an observation joins a camera and a point of the bundle");
+                  "an observation joins a camera and a point of the problem");
   }
 }
 
@@ -108,7 +109,8 @@ BundleResult solve_bundle(const BundleProblem& problem, const Config& config) {
   state.is_used = of_supported_points(problem, visible(state));
   result.num_iterations += minimise(state, true, config.bundle_iterations);
   state.is_used = of_supported_points(
-      problem, of_held_cameras(state, of_supported_points(problem, inliers(state))));
+      problem, of_held_cameras(state, of_supported_points(problem, inliers(state)),
+                               config.bundle_min_observations));
   result.num_iterations += minimise(state, false, config.bundle_iterations);
   result.is_inlier = inliers(state);
   result.camera_from_world = std::move(state.camera_from_world);

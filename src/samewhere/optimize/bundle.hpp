@@ -38,11 +38,11 @@ struct BundleResult {
 
 // Poses and points that minimise the reprojection errors, eq. (23) as a sum of squares. Two rounds
 // of Levenberg and Marquardt with Schur elimination of the points (Triggs et al. 2000): with a
-// Huber loss, then, without it, on what the first found to be inliers. A point that no depth and no
-// second camera supports says nothing about the poses: it sits out and stays; so does a camera of
-// whose observations fewer than a dozen are inliers of the first round. Without a free camera
-// only the points move. The gauge is the caller's: fix one camera, or two where no observation has
-// depth. Throws ContractError without any fixed camera, and for an observation of what is not
+// Huber loss, then without it on the inliers of the first. A point with a single observation and no
+// depth does not constrain the poses: it is left out and stays; so does a camera with fewer than
+// Config::bundle_min_observations inliers in the first round. Without a free camera only the points
+// move. The caller fixes the gauge: one camera, or two where no observation has depth. Throws
+// ContractError without any fixed camera, and for an observation of a camera or point that is not
 // there.
 BundleResult solve_bundle(const BundleProblem& problem, const Config& config);
 

@@ -51,7 +51,7 @@ TEST(Bundle, AnalyticJacobiansEqualNumericOnes) {
   }
 }
 
-TEST(Bundle, ACameraThatHardlyAnythingHoldsStaysWhereItWas) {
+TEST(Bundle, ACameraWithFewInliersKeepsItsPose) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
     const BundleProblem truth = test_scene({}, random);
@@ -72,7 +72,7 @@ TEST(Bundle, ACameraThatHardlyAnythingHoldsStaysWhereItWas) {
   }
 }
 
-TEST(Bundle, DepthAndOneFixedCameraFindADisturbedSceneAgain) {
+TEST(Bundle, RecoversADisturbedSceneWithDepthAndOneFixedCamera) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
     const BundleProblem truth = test_scene({}, random);
@@ -83,7 +83,7 @@ TEST(Bundle, DepthAndOneFixedCameraFindADisturbedSceneAgain) {
   }
 }
 
-TEST(Bundle, PixelsAloneAndTwoFixedCamerasFindADisturbedSceneAgain) {
+TEST(Bundle, RecoversADisturbedSceneWithoutDepthAndTwoFixedCameras) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
     const BundleProblem truth = test_scene({.num_fixed = 2, .has_depth = false}, random);
@@ -93,7 +93,7 @@ TEST(Bundle, PixelsAloneAndTwoFixedCamerasFindADisturbedSceneAgain) {
   }
 }
 
-TEST(Bundle, WithoutNoiseTheTruthIsFoundExactly) {
+TEST(Bundle, IsExactWithoutNoise) {
   core::Random random(3);
   const BundleProblem truth = test_scene({.noise_px = 0.0}, random);
   const BundleResult result =
@@ -108,7 +108,7 @@ TEST(Bundle, WithoutNoiseTheTruthIsFoundExactly) {
   }
 }
 
-TEST(Bundle, WrongMatchesAreFoundOut) {
+TEST(Bundle, RejectsFalseMatches) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
     const BundleProblem truth = test_scene({}, random);
@@ -138,7 +138,7 @@ TEST(Bundle, SolvesToTheSameBitsTwice) {
   }
 }
 
-TEST(Bundle, APointSeenOnceWithoutDepthStaysAndHoldsNoCamera) {
+TEST(Bundle, APointObservedOnceWithoutDepthStaysAndConstrainsNoCamera) {
   core::Random random(5);
   BundleProblem scene = test_scene({.num_fixed = 2, .noise_px = 0.0, .has_depth = false}, random);
   // a point in a wrong place that only camera 5 sees: it must not pull the camera
@@ -162,7 +162,7 @@ TEST(Bundle, WithoutAFreeCameraOnlyThePointsMove) {
   EXPECT_LT((result.points_in_world[seen] - truth.points_in_world[seen]).norm(), 1e-3);
 }
 
-TEST(Bundle, NothingFixedAndObservationsOfNothingAreBrokenPromises) {
+TEST(Bundle, RefusesProblemsWithoutFixedCameraAndObservationsOfMissingPoints) {
   core::Random random(7);
   EXPECT_THROW(solve_bundle(test_scene({.num_fixed = 0}, random), {}), core::ContractError);
   BundleProblem scene = test_scene({}, random);

@@ -69,7 +69,7 @@ class ScaledEdgeCost : public ceres::SizedCostFunction<7, 7, 7, 1, 1> {
   double root_;
 };
 
-// The edge counts as much as its weight says when it is evaluated.
+// Weighs the squared error by the edge's weight at the time of evaluation.
 class Weighted : public ceres::LossFunction {
  public:
   explicit Weighted(const double& weight) : weight_(weight) {}
@@ -166,7 +166,7 @@ ceres::Solver::Options graph_solver_options(int max_iterations) {
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.num_threads = 1;
   options.max_num_iterations = max_iterations;
-  // a stretch without loops lies in a flat valley: a thousandth of the cost may be metres there
+  // along a part without loops the cost is flat: a thousandth of it may be metres there
   options.function_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
   return options;
@@ -224,9 +224,9 @@ ceres::LossFunction* EdgeProblem::loss_of(std::size_t edge) const {
 
 void EdgeProblem::update_edges() {
   for (std::size_t i = 0; i < residuals_.size(); ++i) {
-    const bool is_wanted = weights_[i] > 0.0;
-    if (is_wanted == (residuals_[i] != nullptr)) continue;
-    if (is_wanted) {
+    const bool has_weight = weights_[i] > 0.0;
+    if (has_weight == (residuals_[i] != nullptr)) continue;
+    if (has_weight) {
       residuals_[i] = add_edge(i);
     } else {
       problem_.RemoveResidualBlock(residuals_[i]);

@@ -143,7 +143,7 @@ std::optional<FocalLengthFit> fit_focal_length(const BundleProblem& problem, dou
   FocalBundle bundle(problem);
   const double least = bundle.minimise(prior_sigma, true);
   const double found = bundle.log_ratio();
-  // the cost is a parabola about its least: how fast it rises says how well the length is known
+  // the cost is a parabola about its minimum; its curvature is the inverse variance
   constexpr double kStep = 0.03;
   bundle.log_ratio() = found + kStep;
   const double rise = bundle.minimise(prior_sigma, false) - least;

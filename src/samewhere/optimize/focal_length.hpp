@@ -6,7 +6,7 @@
 
 namespace samewhere::optimize {
 
-// By how much the focal length that all cameras of a problem share was wrong.
+// Correction of the focal length that all cameras of a problem share.
 struct FocalLengthFit {
   double ratio = 1.0;  // found / assumed
   // Standard deviation of the ratio if errors of pixels were independent: a lower limit.
@@ -14,9 +14,9 @@ struct FocalLengthFit {
 };
 
 // The focal length that fits all observations best together with all poses and points: a bundle
-// adjustment with a Huber loss and one more unknown. What says that it is known to `prior_sigma`,
-// as a share of it, keeps it near what was assumed where the motion does not tell. Depth is not
-// used. Nothing if the observations do not hold it: fewer than 200, or an optimum without
+// adjustment with a Huber loss and one more unknown. A prior of standard deviation `prior_sigma`,
+// as a share, keeps it near the assumed one where the motion does not determine it. Depth is not
+// used. Nothing if the observations do not determine it: fewer than 200, or an optimum without
 // curvature. Throws ContractError without any fixed camera.
 std::optional<FocalLengthFit> fit_focal_length(const BundleProblem& problem, double prior_sigma);
 

@@ -42,7 +42,7 @@ BundleProblem arc(double assumed_px, std::uint64_t seed, int num_cameras) {
   return problem;
 }
 
-TEST(FocalLength, OfCamerasThatTurnAboutAPlaceItIsFound) {
+TEST(FocalLength, IsEstimatedFromCamerasAroundAPlace) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     for (const double assumed_px : {420.0, 500.0, 600.0}) {
       SCOPED_TRACE(fmt::format("seed {}, assumed {}", seed, assumed_px));
@@ -55,7 +55,7 @@ TEST(FocalLength, OfCamerasThatTurnAboutAPlaceItIsFound) {
   }
 }
 
-TEST(FocalLength, FewObservationsDoNotTell) {
+TEST(FocalLength, IsNotEstimatedFromFewObservations) {
   BundleProblem problem = arc(500.0, 1, 8);
   problem.observations.resize(100);
   EXPECT_FALSE(fit_focal_length(problem, 0.2));

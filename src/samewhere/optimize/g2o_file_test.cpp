@@ -34,7 +34,7 @@ core::Vector6d g2o_error(const core::Rigid3& measured, const core::Rigid3& found
   return error;
 }
 
-TEST(G2oFile, AnEdgeCostsInG2oWhatItCostsHere) {
+TEST(G2oFile, AnEdgeHasTheSameCostInG2o) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     core::Random random(seed);
     const PoseEdge edge{0, 1, random_pose(random, 1.0), any_information(random), false};
@@ -48,7 +48,7 @@ TEST(G2oFile, AnEdgeCostsInG2oWhatItCostsHere) {
 
 // A keyframe may be tracked from an older one than the last, and a loop may join the same two, be
 // they neighbours or not.
-TEST(G2oFile, OdometryStaysOdometryWhereverItLeads) {
+TEST(G2oFile, OdometryBetweenDistantNumbersStaysOdometry) {
   core::Random random(3);
   PoseGraph graph;
   for (int i = 0; i < 4; ++i) graph.world_from_node.push_back(random_pose(random, 1.0));
@@ -141,7 +141,7 @@ PoseGraph ring(core::Random& random, bool is_planar) {
   return graph;
 }
 
-TEST_F(G2oRead, WhatWasWrittenComesBackInSpaceAndInThePlane) {
+TEST_F(G2oRead, RoundTripInSpaceAndInThePlane) {
   for (const bool is_planar : {false, true}) {
     core::Random random(is_planar ? 5 : 6);
     const PoseGraph graph = ring(random, is_planar);
@@ -161,7 +161,7 @@ TEST_F(G2oRead, WhatWasWrittenComesBackInSpaceAndInThePlane) {
   }
 }
 
-TEST_F(G2oRead, TheOrderOfTheLinesOfVerticesIsNothing) {
+TEST_F(G2oRead, TheOrderOfVertexLinesDoesNotMatter) {
   core::Random random(4);
   const std::string text = g2o_text(ring(random, false), {10, 11, 12, 13, 14, 15});
   const auto lines_with = [&](bool is_vertex) {
@@ -179,7 +179,7 @@ TEST_F(G2oRead, TheOrderOfTheLinesOfVerticesIsNothing) {
             g2o_text(read(text).graph, read(text).names));
 }
 
-TEST_F(G2oRead, EachVertexOfALineFixIsHeld) {
+TEST_F(G2oRead, EveryVertexOfAFixLineIsFixed) {
   core::Random random(4);
   EXPECT_EQ(read(g2o_text(ring(random, false)) + "FIX 2 4 5\n").graph.fixed_nodes,
             (std::vector<int>{0, 2, 4, 5}));
@@ -209,7 +209,7 @@ TEST_F(G2oRead, OdometryJoinsANumberToTheNextThatIsThere) {
   EXPECT_TRUE(found.graph.fixed_nodes.empty()) << "a landmark";
 }
 
-TEST_F(G2oRead, NoOdometryLeadsFromOneRobotToTheNext) {
+TEST_F(G2oRead, OdometryDoesNotJoinTwoRobots) {
   const long a = 97L << 56;
   const long b = 98L << 56;
   std::string text;
@@ -230,7 +230,7 @@ TEST_F(G2oRead, WithoutVerticesThePosesFollowTheEdges) {
   EXPECT_NEAR(found.graph.world_from_node[2].translation.y(), 2.0, 1e-6);
 }
 
-TEST_F(G2oRead, AnInformationThatSaysNothingOfADirectionIsMadeUsable) {
+TEST_F(G2oRead, ASingularInformationIsRaised) {
   const std::string vertices = "VERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 1 0 0\n";
   for (const std::string information : {"4 0 0 4 0 0", "4 4 0 4 0 1", "4 0 0 4 0 -1e-12"}) {
     const G2oGraph found = read(vertices + "EDGE_SE2 1 2 1 0 0 " + information + "\n");
@@ -258,7 +258,7 @@ TEST(G2oChi2, TakesTwiceTheSineOfHalfTheAngle) {
   EXPECT_NEAR(g2o_chi2_of(graph, edge), 4.0 * std::pow(std::sin(0.5), 2) + 0.09, 1e-12);
 }
 
-TEST_F(G2oRead, WhatIsBrokenIsNamedWithItsLine) {
+TEST_F(G2oRead, AnErrorNamesTheLine) {
   const std::string vertices = "VERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 1 0 0\n";
   const std::string edge = "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n";
   EXPECT_EQ(complaint(vertices + edge), "");
@@ -286,11 +286,11 @@ TEST_F(G2oRead, WhatIsBrokenIsNamedWithItsLine) {
       {vertices + edge + "FIX 9\n", "line 4: names vertex 9"}};
   for (const auto& [text, expected] : broken) {
     EXPECT_THAT(complaint(text), HasSubstr(expected)) << text;
-    EXPECT_THAT(complaint(text), HasSubstr("g2o_read_WhatIsBrokenIsNamedWithItsLine.g2o")) << text;
+    EXPECT_THAT(complaint(text), HasSubstr("g2o_read_AnErrorNamesTheLine.g2o")) << text;
   }
 }
 
-TEST_F(G2oRead, AFileCutAnywhereIsReadOrRefused) {
+TEST_F(G2oRead, ATruncatedFileIsReadOrRefused) {
   core::Random random(2);
   const std::string text = g2o_text(ring(random, false));
   int num_refused = 0;

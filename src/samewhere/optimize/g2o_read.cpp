@@ -11,7 +11,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
-#include <samewhere/optimize/lay_out.hpp>
+#include <samewhere/optimize/spanning_tree.hpp>
 
 namespace samewhere::optimize {
 namespace {
@@ -59,7 +59,7 @@ class Reader {
                       path.string(), found_.names.size(), found_.graph.edges.size()));
     }
     found_.is_without_vertices = is_without_vertices;
-    if (is_without_vertices) lay_out(found_.graph);
+    if (is_without_vertices) place_by_spanning_tree(found_.graph);
     warn_of_projected(path);
   }
 
@@ -106,8 +106,8 @@ class Reader {
     }
   }
 
-  // Nodes stand in the order of the path, whatever that of the lines is: what is earlier and later
-  // matters to who is believed.
+  // Nodes are in the order of the trajectory, whatever that of the lines is: which loops are
+  // rejected depends on it (loop_segments.hpp).
   void sort_by_name() {
     const std::vector<core::Rigid3> as_read = std::move(found_.graph.world_from_node);
     found_.names.clear();

@@ -12,11 +12,10 @@
 namespace samewhere::optimize {
 namespace {
 
-constexpr int kMinInliers = 6;
 constexpr double kConverged = 1e-8;
 constexpr int kPoseNumbers = 6;
-constexpr double kCell = 0.15;         // side of a part of the picture, tangent of an angle
-constexpr double kMinVariance = 1e-4;  // of a residual: no picture is without noise
+constexpr double kCell = 0.15;         // side of a cell of the image, tangent of an angle
+constexpr double kMinVariance = 1e-4;  // of a residual: no image is without noise
 
 Reprojection reproject_to(const MotionProblem& problem, const MotionObservation& seen,
                           const Eigen::Vector3d& point_in_camera) {
@@ -53,7 +52,7 @@ NormalEquations linearise(const MotionProblem& problem, const MotionResult& resu
   return sum;
 }
 
-// a little damping: a direction without evidence (all points on a line) must not run away
+// a little damping: a direction that no point constrains (all on a line) must not diverge
 core::Matrix6d damped(core::Matrix6d hessian) {
   hessian.diagonal().array() += 1e-6 * hessian.diagonal().array().maxCoeff();
   return hessian;
@@ -99,16 +98,16 @@ core::Matrix6d covariance_of(const MotionProblem& problem, const MotionResult& r
   core::Matrix6d hessian = core::Matrix6d::Zero();
   double squares = 0.0;
   int num_spare = -kPoseNumbers;
-  std::map<Cell, core::Vector6d> pulls;  // what the residuals of a cell ask of the pose
+  std::map<Cell, core::Vector6d> gradients;  // of the residuals of a cell
   for_each_inlier(problem, result, [&](const auto& seen, const MotionResidual& r, double weight) {
     hessian += weight * r.jacobian.transpose() * r.jacobian;
     squares += weight * r.value.squaredNorm();
     num_spare += r.size;
-    const auto cell = pulls.try_emplace(cell_of(problem, seen), core::Vector6d::Zero()).first;
+    const auto cell = gradients.try_emplace(cell_of(problem, seen), core::Vector6d::Zero()).first;
     cell->second += weight * r.jacobian.transpose() * r.value;
   });
   core::Matrix6d spread = std::max(squares / std::max(num_spare, 1), kMinVariance) * hessian;
-  for (const auto& [cell, pull] : pulls) spread += pull * pull.transpose();
+  for (const auto& [cell, gradient] : gradients) spread += gradient * gradient.transpose();
   const core::Matrix6d inverse = damped(hessian).ldlt().solve(core::Matrix6d::Identity());
   return inverse * spread * inverse;
 }
@@ -136,13 +135,14 @@ MotionResult refine_pose(const MotionProblem& problem, const core::Rigid3& camer
   for (int round = 0; round < config.motion_rounds; ++round) {
     descend(problem, result, config.motion_iterations);
     sort_inliers(problem, result);
-    if (result.num_inliers < kMinInliers) {
+    if (result.num_inliers < config.motion_min_inliers) {
       result.camera_from_world = camera_from_world;
       break;
     }
   }
   sort_inliers(problem, result);
-  if (result.num_inliers >= kMinInliers) result.covariance = covariance_of(problem, result);
+  if (result.num_inliers >= config.motion_min_inliers)
+    result.covariance = covariance_of(problem, result);
   return result;
 }
 

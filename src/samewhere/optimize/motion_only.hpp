@@ -10,12 +10,12 @@
 
 namespace samewhere::optimize {
 
-// A point of known position and where it was seen.
+// Observation of a point of known position.
 struct MotionObservation {
   Eigen::Vector3d point_in_world = Eigen::Vector3d::Zero();  // metres
   Eigen::Vector2d undistorted_px = Eigen::Vector2d::Zero();
   double right_x_px =
-      std::numeric_limits<double>::quiet_NaN();  // virtual right picture; NaN = no depth
+      std::numeric_limits<double>::quiet_NaN();  // virtual right image; NaN = no depth
   double sigma_px = 1.0;                         // standard deviation of the pixel coordinates
 };
 
@@ -30,18 +30,18 @@ struct MotionResult {
   std::vector<bool> is_inlier;  // one per observation
   int num_inliers = 0;
   double reprojection_rmse_px =
-      0.0;  // of the inliers, without the right picture; 0 if there are none
-  // Of the pose by retract(), from the residuals of the inliers, not from sigma_px. Two parts are
-  // added: what they leave open if they are independent, and what they leave open if those in the
-  // same part of the picture err together (sandwich estimate over clusters; Liang and Zeger,
-  // Biometrika 1986). The points are taken as known. Identity if nothing was found.
+      0.0;  // of the inliers, without the right image; 0 if there are none
+  // Of the pose by retract(), from the residuals of the inliers, not from sigma_px: the sum of the
+  // covariance for independent residuals and of that for residuals correlated within a cell of the
+  // image (sandwich estimate over clusters; Liang and Zeger, Biometrika 1986). The points are taken
+  // as known. Identity with too few inliers.
   core::Matrix6d covariance = core::Matrix6d::Identity();
 };
 
 // The pose that minimises the reprojection error of the points, which stay fixed. Gauss-Newton with
-// Huber weights; after each round the observations are sorted into inliers and outliers at the 95 %
-// point of chi-square, and outliers sit out the next round. With fewer than 6 inliers the pose
-// returned is the one it started from.
+// Huber weights; after each round the observations are classified as inliers or outliers at the
+// 95 % point of chi-square, and outliers are not used in the next round. With fewer than
+// Config::motion_min_inliers inliers the pose returned is the initial one.
 MotionResult refine_pose(const MotionProblem& problem, const core::Rigid3& camera_from_world,
                          const Config& config);
 

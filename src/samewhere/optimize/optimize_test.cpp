@@ -97,7 +97,7 @@ PoseGraph square_walk(core::Random& random, std::vector<core::Rigid3>& truth) {
   return graph;
 }
 
-TEST(PoseGraph, ExactEdgesUndoDrift) {
+TEST(PoseGraph, ExactEdgesCorrectDrift) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     core::Random random(seed);
     std::vector<core::Rigid3> truth;
@@ -123,7 +123,7 @@ TEST(PoseGraph, SolvesToTheSameBitsTwice) {
   }
 }
 
-TEST(PoseGraph, AnEdgeToNowhereIsABrokenPromise) {
+TEST(PoseGraph, RefusesAnEdgeToAMissingNode) {
   PoseGraph graph{{core::Rigid3{}, core::Rigid3{}}, {PoseEdge{.a = 0, .b = 2}}};
   EXPECT_THROW(solve_pose_graph(graph, {}), core::ContractError);
 }
@@ -163,7 +163,7 @@ TEST(MotionOnly, AnalyticJacobianEqualsTheNumericOne) {
   }
 }
 
-TEST(MotionOnly, FindsThePoseDespiteOutliers) {
+TEST(MotionOnly, EstimatesThePoseDespiteOutliers) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     core::Random random(seed);
     const core::Rigid3 truth = random_pose(random);
@@ -208,13 +208,13 @@ double mean_normalised_square(double own_px, double shared_px) {
 
 // Of six numbers. Where nothing is shared both parts of the covariance say the same, and it is
 // twice as large as the errors are.
-TEST(MotionOnly, ItsCovarianceTellsErrorsThatPartsOfThePictureShareAndThoseTheyDoNot) {
+TEST(MotionOnly, CovarianceIncludesErrorsCorrelatedWithinACell) {
   EXPECT_NEAR(mean_normalised_square(0.5, 0.0), 3.0, 1.0);
   EXPECT_NEAR(mean_normalised_square(0.05, 0.0), 3.0, 1.0);
   EXPECT_LT(mean_normalised_square(0.3, 0.5), 14.0);
 }
 
-TEST(MotionOnly, WithoutEvidenceThePoseStays) {
+TEST(MotionOnly, WithFewInliersThePoseStays) {
   core::Random random(1);
   const core::Rigid3 start = random_pose(random);
   const MotionResult result = refine_pose({{640, 480, 500, 500, 320, 240}, 0.075, {}}, start, {});

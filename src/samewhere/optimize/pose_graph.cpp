@@ -4,14 +4,14 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/optimize/edge_problem.hpp>
-#include <samewhere/optimize/graduation.hpp>
+#include <samewhere/optimize/graduated_non_convexity.hpp>
 #include <samewhere/optimize/pose_graph.hpp>
 #include <samewhere/optimize/scaled_edge.hpp>
 
 namespace samewhere::optimize {
 namespace {
 
-// What the losses left of an edge's weight, in a graph that is solved.
+// Weight that the loss gives a loop edge in the solved graph.
 double weight_of(double chi2, const Config& config) {
   switch (config.loop_loss) {
     case LoopLoss::kHuber:
@@ -70,7 +70,7 @@ EdgeJacobians edge_jacobians(const PoseEdge& edge, const core::Rigid3& world_fro
 namespace {
 
 template <class Joins>
-std::vector<int> joined_by(const PoseGraph& graph, const Joins& joins) {
+std::vector<int> components_by(const PoseGraph& graph, const Joins& joins) {
   std::vector<int> parent(graph.world_from_node.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root_of = [&](int node) {
@@ -92,31 +92,32 @@ std::vector<int> joined_by(const PoseGraph& graph, const Joins& joins) {
 
 }  // namespace
 
-std::vector<int> parts_of(const PoseGraph& graph) {
-  return joined_by(graph, [](const PoseEdge& /*edge*/) { return true; });
+std::vector<int> connected_components(const PoseGraph& graph) {
+  return components_by(graph, [](const PoseEdge& /*edge*/) { return true; });
 }
 
-std::vector<int> stretches_of(const PoseGraph& graph) {
-  return joined_by(graph, [](const PoseEdge& edge) { return !edge.is_loop; });
+std::vector<int> odometry_components(const PoseGraph& graph) {
+  return components_by(graph, [](const PoseEdge& edge) { return !edge.is_loop; });
 }
 
 std::vector<int> held_nodes(const PoseGraph& graph) {
-  const std::vector<int> part = parts_of(graph);
+  const std::vector<int> components = connected_components(graph);
   std::vector<int> held = graph.fixed_nodes;
-  std::vector<bool> is_held(part.size(), false);
+  std::vector<bool> is_held(components.size(), false);
   for (const int node : graph.fixed_nodes)
-    is_held.at(static_cast<std::size_t>(part.at(static_cast<std::size_t>(node)))) = true;
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    const auto lowest = static_cast<std::size_t>(part[i]);
-    if (!is_held[lowest]) held.push_back(part[i]);
+    is_held.at(static_cast<std::size_t>(components.at(static_cast<std::size_t>(node)))) = true;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const auto lowest = static_cast<std::size_t>(components[i]);
+    if (!is_held[lowest]) held.push_back(components[i]);
     is_held[lowest] = true;
   }
   return held;
 }
 
 PoseGraphSummary solve_pose_graph(PoseGraph& graph, const Config& config) {
-  if (config.loop_loss == LoopLoss::kGnc) return Graduation(graph, config).solve();
-  if (config.loop_loss == LoopLoss::kGncEach) return Graduation(graph, config).solve_each();
+  if (config.loop_loss == LoopLoss::kGnc) return GraduatedNonConvexity(graph, config).solve();
+  if (config.loop_loss == LoopLoss::kGncEach)
+    return GraduatedNonConvexity(graph, config).solve_each();
   PoseGraphSummary summary = EdgeProblem(graph, config).solve(config.graph_iterations);
   summary.robust_cost = summary.final_cost;
   for (const PoseEdge& edge : graph.edges)

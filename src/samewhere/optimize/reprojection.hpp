@@ -8,16 +8,16 @@
 
 namespace samewhere::optimize {
 
-// Nearer to the camera's plane than this, a point has no reprojection.
+// Points nearer to the camera's plane have no reprojection.
 constexpr double kMinDepth_m = 0.05;
 
 // 95 % points of chi-square by degrees of freedom: beyond, a reprojection is an outlier.
 constexpr double kChiSquare95[] = {0.0, 0.0, 5.991, 7.815};
 
-// Where a picture shows a point.
+// Pixel at which an image shows a point.
 struct SeenAt {
   Eigen::Vector2d undistorted_px = Eigen::Vector2d::Zero();
-  double right_x_px = 0.0;  // (virtual) right picture; NaN = no depth
+  double right_x_px = 0.0;  // (virtual) right image; NaN = no depth
   double sigma_px = 1.0;    // standard deviation of the coordinates
 };
 
@@ -58,7 +58,7 @@ inline Reprojection reproject(const core::PinholeRadtan& intrinsics, double base
   return r;
 }
 
-// Whether the point may be what is seen there.
+// Whether the residual is within the chi-square limit.
 inline bool is_inlier(const Reprojection& r) {
   return r.size > 0 && r.value.squaredNorm() < kChiSquare95[r.size];
 }

@@ -59,7 +59,7 @@ class CreepingWalkMaker {
     core::Vector6d sigma;
     sigma << Eigen::Vector3d::Constant(kSigma_m), Eigen::Vector3d::Constant(kSigma_rad);
     PoseEdge edge{a, b, a_from_b, sigma.cwiseAbs2().cwiseInverse().asDiagonal(), is_loop};
-    // odometry does not see its unit creep; who sees the same points again does
+    // odometry does not observe scale drift; a loop does
     edge.log_scale = is_loop ? walk_.true_log_scales[j] - walk_.true_log_scales[i] +
                                    kSigmaLogScale * random_.gaussian()
                              : 0.0;
@@ -86,7 +86,7 @@ double ate_m(const CreepingWalk& walk) {
   return std::sqrt(sum / static_cast<double>(walk.truth.size()));
 }
 
-TEST(ScaledEdge, DerivativesAreThoseOfSmallSteps) {
+TEST(ScaledEdge, AnalyticJacobiansEqualNumericOnes) {
   core::Random random(1);
   PoseEdge edge{0, 1, core::exp_r3so3(random_tangent(random, 1.0, 0.5))};
   edge.log_scale = 0.2;
@@ -120,7 +120,7 @@ TEST(ScaledEdge, DerivativesAreThoseOfSmallSteps) {
   EXPECT_LT((by_scale_of_b - analytic.by_scale_of_b).norm(), 1e-7);
 }
 
-TEST(ScaledGraph, LoopsTakeOutTheCreepingUnit) {
+TEST(ScaledGraph, LoopsCorrectScaleDrift) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CreepingWalk walk = CreepingWalkMaker(seed).walk(3);
     const double before_m = ate_m(walk);
@@ -138,7 +138,7 @@ TEST(ScaledGraph, LoopsTakeOutTheCreepingUnit) {
   }
 }
 
-TEST(ScaledGraph, ALoopOfAnotherSizeIsRefused) {
+TEST(ScaledGraph, ALoopOfAnotherScaleIsRejected) {
   CreepingWalk walk = CreepingWalkMaker(7).walk(2);
   PoseEdge& last = walk.graph.edges.back();
   last.log_scale += 1.0;
@@ -146,7 +146,7 @@ TEST(ScaledGraph, ALoopOfAnotherSizeIsRefused) {
   EXPECT_EQ(summary.weights.back(), 0.0);
 }
 
-TEST(ScaledGraph, WithAllUnitsOneItIsTheRigidGraph) {
+TEST(ScaledGraph, WithEqualUnitsItEqualsTheRigidGraph) {
   core::Random random(9);
   PoseGraph graph;
   graph.world_from_node = {core::Rigid3{}};
@@ -167,7 +167,7 @@ TEST(ScaledGraph, WithAllUnitsOneItIsTheRigidGraph) {
               1e-4);
 }
 
-TEST(ScaledGraph, ScalesOfSomeNodesOrInThePlaneAreABrokenPromise) {
+TEST(ScaledGraph, RefusesScalesOfSomeNodesAndInThePlane) {
   PoseGraph graph = CreepingWalkMaker(1).walk(2).graph;
   PoseGraph planar = graph;
   planar.is_planar = true;

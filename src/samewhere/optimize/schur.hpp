@@ -6,8 +6,8 @@
 
 namespace samewhere::optimize {
 
-// What both solvers of a bundle minimise: a problem, where its cameras and points are by now, and
-// which observations count.
+// State of a bundle adjustment, for both solvers: the problem, its cameras and points, and the
+// observations in use.
 struct BundleState {
   const BundleProblem* problem = nullptr;
   std::vector<core::Rigid3> camera_from_world;   // one per camera
@@ -15,9 +15,9 @@ struct BundleState {
   std::vector<bool> is_used;                     // one per observation
 };
 
-// What a point behind the camera that sees it counts for, standard deviations: more than any that
-// is still believed. A step that takes a few far ones there must not be refused for their sake;
-// they are out when it is over.
+// Error of a point behind the camera that observes it, standard deviations: above that of any
+// inlier, but small enough that a step that moves a few distant points there is not rejected; they
+// are outliers afterwards.
 inline constexpr double kErrorBehind = 100.0;
 
 // Moves free cameras and points towards the least sum of squared reprojection errors, or of their

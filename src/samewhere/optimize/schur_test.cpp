@@ -41,7 +41,7 @@ void spoil_some_observations(BundleProblem& problem, core::Random& random) {
 // Depth or not, with a robust loss or not.
 class BothSolvers : public testing::TestWithParam<std::tuple<bool, bool>> {};
 
-TEST_P(BothSolvers, ComeToTheSameMinimum) {
+TEST_P(BothSolvers, FindTheSameMinimum) {
   const auto [has_depth, is_robust] = GetParam();
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     core::Random random(seed);
@@ -66,7 +66,7 @@ TEST_P(BothSolvers, ComeToTheSameMinimum) {
 INSTANTIATE_TEST_SUITE_P(DepthAndLoss, BothSolvers,
                          testing::Combine(testing::Bool(), testing::Bool()));
 
-TEST(Schur, NeverEndsWorseThanItBegan) {
+TEST(Schur, NeverIncreasesTheCost) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     core::Random random(seed);
     const BundleProblem problem =
@@ -87,7 +87,7 @@ TEST(Schur, NeverEndsWorseThanItBegan) {
   }
 }
 
-TEST(Schur, NothingToUseLeavesAllInPlace) {
+TEST(Schur, WithoutObservationsEverythingStays) {
   core::Random random(3);
   const BundleProblem problem = test_scene({}, random);
   BundleState state = state_of(problem);
@@ -96,7 +96,7 @@ TEST(Schur, NothingToUseLeavesAllInPlace) {
   EXPECT_EQ(state.points_in_world, problem.points_in_world);
 }
 
-TEST(Schur, APointBehindACameraDoesNotHoldUpTheOthersWhoeverSolves) {
+TEST(Schur, APointBehindACameraDoesNotStopEitherSolver) {
   core::Random random(4);
   BundleProblem problem = disturbed(test_scene({}, random), 0.02, 0.05, random);
   const auto seen = static_cast<std::size_t>(problem.observations.front().point);

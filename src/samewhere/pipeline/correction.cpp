@@ -13,13 +13,13 @@ Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
   correct::Closing closing = correct::close_loop(map, loop, config.optimize, overruled);
   scene::MapVersion corrected = apply(map, closing.edit);
   if (!closing.withdrawn.empty()) corrected = with_places_parted(map, std::move(corrected), config);
-  for (const auto& believed : closing.believed)
+  for (const auto& believed : closing.accepted)
     for (const auto& edit : map::fuse_across(corrected, believed, config.map, config.features))
       corrected = apply(std::move(corrected), edit);
   return {std::move(corrected), std::move(closing)};
 }
 
-std::string bent_by(const correct::BentLoop& bent, const Config& config) {
+std::string bent_by(const correct::OutlierLoop& bent, const Config& config) {
   return fmt::format("chi-square of its edge {:.1f}, above {:.1f}", bent.chi2,
                      config.optimize.loop_chi2);
 }

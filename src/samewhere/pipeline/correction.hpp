@@ -21,6 +21,6 @@ Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                      const Config& config, core::CandidateId overruled = {});
 
 // Why a loop that the graph of loops does not believe is none.
-std::string bent_by(const correct::BentLoop& bent, const Config& config);
+std::string bent_by(const correct::OutlierLoop& bent, const Config& config);
 
 }  // namespace samewhere::pipeline

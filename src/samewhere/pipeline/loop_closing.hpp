@@ -1,25 +1,20 @@
 #pragma once
 
-#include <map>
-#include <set>
-
 #include <samewhere/core/timing.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/loop_detector.hpp>
+#include <samewhere/pipeline/map_context.hpp>
 #include <samewhere/pipeline/messages.hpp>
 #include <samewhere/scene/map_file.hpp>
 
 namespace samewhere::pipeline {
 
-// Which keyframes frames are.
-using KeyframeOf = std::map<core::FrameId, core::KeyframeId>;
+// The verdict on an accepted loop in a later map version, with the loops that were closed since.
+core::Verdict reverify(const scene::MapVersion& map, const scene::LoopEdge& loop,
+                       const core::LedgerRow& accepted, const Config& config);
 
-// The verdict on a loop, accepted once, on a map that by now believes others.
-core::Verdict verdict_on(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                         const core::LedgerRow& accepted, const Config& config);
-
-// The third stage: have I been here before, and is it really the same place? Owns the place index
-// and the ledger.
+// The third stage: detects the loops of a keyframe and the places of a LOST view. Owns the place
+// index and the ledger.
 class LoopClosing {
  public:
   explicit LoopClosing(const Config& config);
@@ -30,19 +25,19 @@ class LoopClosing {
   LoopAnswer answer(const ToLoopClosing& message);
 
   const core::Ledger& ledger() const { return ledger_; }
-  const LoopDetector& detector() const { return detector_; }
+  const PlaceIndex& index() const { return detector_.index(); }
   const core::Timings& timings() const { return timings_; }
 
  private:
   LoopAnswer answer(const FindLoops& question);
-  // Which places of the whole map may this be? The judge of loops says what it recognises.
+  // The places of the whole map that the view may show.
   LoopAnswer answer(const FindPlace& question);
 
   Config config_;
   core::Timings timings_;
   LoopDetector detector_;
   core::Ledger ledger_;
-  KeyframeOf keyframe_of_;  // of views that are remembered
+  KeyframeOf keyframe_of_;  // of the remembered views
 };
 
 }  // namespace samewhere::pipeline

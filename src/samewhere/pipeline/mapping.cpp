@@ -136,7 +136,7 @@ bool Mapping::hear_loops(int max_unheard) {
     for (const auto& loop : answer.loops) {
       const AcceptedLoop measured = in_lengths_of_today(map_, loop);
       const bool is_of_today = answer.map_number >= withdrawn_at_;
-      const std::optional<AcceptedLoop> heard = is_of_today ? measured : judged_anew(measured);
+      const std::optional<AcceptedLoop> heard = is_of_today ? measured : reverified(measured);
       if (heard) were_parted |= correct(*heard);
     }
   }
@@ -160,15 +160,15 @@ bool Mapping::correct(const AcceptedLoop& heard) {
   const correct::Closing& closing = correction.closing;
   think_again(closing, *loop);
   map_ = correction.map;
-  if (!closing.believed.empty()) full_bundles_.note_correction(map_);
+  if (!closing.accepted.empty()) full_bundles_.note_correction(map_);
   if (!closing.withdrawn.empty()) withdrawn_at_ = map_.number;
   return !closing.withdrawn.empty();
 }
 
-std::optional<AcceptedLoop> Mapping::judged_anew(AcceptedLoop heard) {
+std::optional<AcceptedLoop> Mapping::reverified(AcceptedLoop heard) {
   const auto known = accepted_.find(heard.edge.cause);
   if (known == accepted_.end()) return heard;
-  const core::Verdict verdict = verdict_on(map_, heard.edge, known->second, config_);
+  const core::Verdict verdict = reverify(map_, heard.edge, known->second, config_);
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
   if (loop == nullptr) {
     add_row({known->second.candidate, verdict});
@@ -179,15 +179,15 @@ std::optional<AcceptedLoop> Mapping::judged_anew(AcceptedLoop heard) {
 }
 
 void Mapping::think_again(const correct::Closing& closing, const scene::LoopEdge& newest) {
-  if (closing.refused)
-    reject(closing.refused->loop, core::Refusal::kGraph, bent_by(*closing.refused, config_));
+  if (closing.rejected)
+    reject(closing.rejected->loop, core::Refusal::kGraph, bent_by(*closing.rejected, config_));
   for (const auto& bent : closing.withdrawn) {
     reject(bent.loop, core::Refusal::kWithdrawn,
            fmt::format("{}, since frames {} and {} are one place", bent_by(bent, config_),
                        map_.at(newest.query).view.frame.index(),
                        map_.at(newest.match).view.frame.index()));
   }
-  for (const auto& loop : closing.believed)
+  for (const auto& loop : closing.accepted)
     if (loop.cause != newest.cause) accept_again(loop);
 }
 
@@ -196,16 +196,16 @@ void Mapping::reject(const scene::LoopEdge& loop, core::Refusal stage, const std
                        .query = map_.at(loop.query).view.frame,
                        .match = map_.at(loop.match).view.frame},
                       {}};
-  const auto judged = accepted_.find(loop.cause);  // unless in an earlier session
-  if (judged != accepted_.end()) row = judged->second;
+  const auto known = accepted_.find(loop.cause);  // unless in an earlier session
+  if (known != accepted_.end()) row = known->second;
   const core::Evidence evidence = core::evidence_of(row.verdict);
   row.verdict = core::Rejection{loop.cause, evidence, stage, reason};
   add_row(row);
 }
 
 void Mapping::accept_again(const scene::LoopEdge& loop) {
-  const auto judged = accepted_.find(loop.cause);
-  if (judged != accepted_.end()) add_row(judged->second);
+  const auto known = accepted_.find(loop.cause);
+  if (known != accepted_.end()) add_row(known->second);
 }
 
 void Mapping::add_row(const core::LedgerRow& row) {

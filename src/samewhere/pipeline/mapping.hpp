@@ -52,7 +52,7 @@ class Mapping {
   void note(const LoopAnswer& answer);
   bool correct(const AcceptedLoop& heard);
   // The same loop, if it is one still: it was accepted on a map that believed other loops.
-  std::optional<AcceptedLoop> judged_anew(AcceptedLoop heard);
+  std::optional<AcceptedLoop> reverified(AcceptedLoop heard);
   // What the pose graph makes of the judge's verdicts goes into the ledger, too.
   void think_again(const correct::Closing& closing, const scene::LoopEdge& newest);
   void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);

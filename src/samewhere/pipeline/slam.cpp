@@ -125,10 +125,9 @@ const core::Ledger& Slam::ledger() const {
 
 std::vector<core::Descriptor> Slam::descriptors() const {
   require_finished();
-  const LoopDetector& detector = loop_closing_.detector();
+  const PlaceIndex& index = loop_closing_.index();
   std::vector<core::Descriptor> descriptors;
-  for (int i = 0; i < detector.num_descriptors(); ++i)
-    descriptors.push_back(detector.descriptor(i));
+  for (int i = 0; i < index.num_descriptors(); ++i) descriptors.push_back(index.descriptor(i));
   return descriptors;
 }
 

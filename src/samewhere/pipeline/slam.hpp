@@ -46,7 +46,7 @@ class Slam {
   std::uint16_t session() const { return tracking_.session(); }
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return tracking_.frames(); }
-  std::uint64_t describer_checksum() const { return loop_closing_.detector().describer_checksum(); }
+  std::uint64_t describer_checksum() const { return loop_closing_.index().describer_checksum(); }
 
   // Why there is no pose, as long as there is none: of the views tried last.
   std::string why_not_started() const { return tracking_.why_not_started(); }
@@ -57,7 +57,7 @@ class Slam {
 
   // From here on: after finish().
   const scene::MapVersion& map() const;
-  // The judge's rows, and behind them what the pose graph made of them later.
+  // The rows of the loop verifier, and behind them the later ones of the pose graph.
   const core::Ledger& ledger() const;
   // What the views that loops are looked for among look like, oldest first.
   std::vector<core::Descriptor> descriptors() const;

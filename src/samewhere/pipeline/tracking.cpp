@@ -243,7 +243,7 @@ core::FramePose Tracking::by_odometry(const core::FramePose& pose) {
   if (newest.index() < first_followed_ || newest == reference || map_.loops.empty()) return pose;
   const Way way{map_.number, newest, reference};
   if (!last_way_ || last_way_->first != way)
-    last_way_ = {way, are_joined_by_loop(map_, newest, reference)};
+    last_way_ = {way, shortest_path_uses_loop(map_, newest, reference)};
   return last_way_->second ? relative_to(newest, pose) : pose;
 }
 

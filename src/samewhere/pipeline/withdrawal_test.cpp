@@ -54,8 +54,8 @@ TEST_F(LookAlikeRooms, TrueLoopsThatComeLaterPartThemAgain) {
     }
     ASSERT_EQ(never.loops.size(), 2U);
     EXPECT_EQ(believed.loops.size(), 2U);
-    ASSERT_EQ(believed.doubted_loops.size(), 1U);
-    EXPECT_EQ(believed.doubted_loops[0].cause, kLie);
+    ASSERT_EQ(believed.suspended_loops.size(), 1U);
+    EXPECT_EQ(believed.suspended_loops[0].cause, kLie);
     EXPECT_EQ(survivors(believed), survivors(map_));
     EXPECT_EQ(num_seen_in_both_rooms(believed), 0);
     EXPECT_LT(rmse_m(believed), 1.02 * rmse_m(never)) << "the goal of the bench undo";
@@ -68,12 +68,12 @@ TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoLiesPartsThem) {
   ASSERT_EQ(believed.loops.size(), 2U);
   believed = with_next(believed);
   const auto spoken = correct::between_holders(believed, true_loop(12, 1)).value();
-  EXPECT_TRUE(with_loop(believed, spoken, config_).closing.refused) << "one against two";
+  EXPECT_TRUE(with_loop(believed, spoken, config_).closing.rejected) << "one against two";
 
   const Correction correction = with_loop(believed, spoken, config_, kLie);
   EXPECT_EQ(correction.closing.withdrawn.size(), 2U);
   ASSERT_EQ(correction.map.loops.size(), 1U);
-  EXPECT_TRUE(correction.map.doubted_loops.empty());
+  EXPECT_TRUE(correction.map.suspended_loops.empty());
   EXPECT_EQ(survivors(correction.map), survivors(map_));
   EXPECT_EQ(num_seen_in_both_rooms(correction.map), 0);
   EXPECT_LT(rmse_m(correction.map), 0.1);
@@ -82,8 +82,8 @@ TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoLiesPartsThem) {
   const core::LedgerRow row = accepted(core::CandidateId(9));
   const scene::LoopEdge third = loop(
       2 * kPerRoom, kPerRoom - 1, inverse(map::test_walk(5)) * map::test_walk(6), row.candidate.id);
-  EXPECT_TRUE(core::is_loop(verdict_on(believed, third, row, config_)));
-  EXPECT_EQ(core::stage_of(verdict_on(correction.map, third, row, config_)), "rival");
+  EXPECT_TRUE(core::is_loop(reverify(believed, third, row, config_)));
+  EXPECT_EQ(core::stage_of(reverify(correction.map, third, row, config_)), "competing");
 }
 
 // What was culled while the lie was believed hung on the other room.
@@ -97,8 +97,8 @@ TEST_F(LookAlikeRooms, TheyArePartedThoughKeyframesWentMeanwhile) {
   for (const std::size_t query : {13U, 14U})
     believed = closed(believed, true_loop(query, 14 - query));
   EXPECT_EQ(believed.loops.size(), 2U);
-  ASSERT_EQ(believed.doubted_loops.size(), 1U);
-  EXPECT_EQ(believed.doubted_loops[0].cause, kLie);
+  ASSERT_EQ(believed.suspended_loops.size(), 1U);
+  EXPECT_EQ(believed.suspended_loops[0].cause, kLie);
   EXPECT_EQ(num_seen_in_both_rooms(believed), 0);
   EXPECT_LT(rmse_m(believed), 0.1);
 }

@@ -53,12 +53,12 @@ std::string_view question_of(core::Refusal check) {
       return "are the inliers spread over the image?";
     case core::Refusal::kPose:
       return "is a relative pose estimated, where one is required?";
-    case core::Refusal::kAgreement:
+    case core::Refusal::kConsistency:
       return "do the relative poses from both views' depth agree?";
     case core::Refusal::kOdometry:
       return "is the correction within the accumulated drift?";
-    case core::Refusal::kRival:
-      return "does no earlier loop place the query elsewhere?";
+    case core::Refusal::kCompeting:
+      return "does no other place explain the query?";
     case core::Refusal::kSequence:
       return "do neighbouring views match too, where nothing else decides?";
     case core::Refusal::kGraph:

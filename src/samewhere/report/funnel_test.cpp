@@ -70,7 +70,7 @@ TEST(FunnelText, HasEveryCheckAndBothOutcomesInLine) {
   }
   EXPECT_EQ(names,
             (std::vector<std::string>{"check", "similarity", "pause", "matches", "inliers",
-                                      "spread", "pose", "agreement", "odometry", "rival",
+                                      "spread", "pose", "consistency", "odometry", "competing",
                                       "sequence", "graph", "withdrawn", "ambiguous", "accepted"}));
   EXPECT_TRUE(text.ends_with("\n"));
 }

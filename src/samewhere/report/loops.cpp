@@ -19,21 +19,21 @@ void add_score(Json& scores, const char* name, double value) {
   if (std::isfinite(value)) scores[name] = value;
 }
 
-void add_rival(Json& scores, const core::RivalEvidence& rival) {
-  scores["rival"] = rival.frame.index();
-  add_score(scores, "rival_apart_m", rival.apart_m);
-  add_score(scores, "rival_apart_rad", rival.apart_rad);
-  add_score(scores, "rival_mahalanobis_squared", rival.mahalanobis_squared);
-  if (!rival.gain) return;
-  scores["rival_first_loop"] = rival.first_loop.index();
-  add_score(scores, "rival_gain", *rival.gain);
+void add_competing_loop(Json& scores, const core::CompetingLoopEvidence& loop) {
+  scores["competing_loop"] = loop.frame.index();
+  add_score(scores, "competing_loop_apart_m", loop.apart_m);
+  add_score(scores, "competing_loop_apart_rad", loop.apart_rad);
+  add_score(scores, "competing_loop_mahalanobis_squared", loop.mahalanobis_squared);
+  if (!loop.gain) return;
+  scores["competing_loop_first"] = loop.first_loop.index();
+  add_score(scores, "competing_loop_gain", *loop.gain);
 }
 
-void add_other_place(Json& scores, const core::OtherPlaceEvidence& other) {
-  scores["other_place"] = other.frame.index();
-  scores["other_place_inliers"] = other.num_inliers;
-  add_score(scores, "other_place_apart_m", other.apart_m);
-  add_score(scores, "other_place_apart_rad", other.apart_rad);
+void add_competing_place(Json& scores, const core::CompetingPlaceEvidence& place) {
+  scores["competing_place"] = place.frame.index();
+  scores["competing_place_inliers"] = place.num_inliers;
+  add_score(scores, "competing_place_apart_m", place.apart_m);
+  add_score(scores, "competing_place_apart_rad", place.apart_rad);
 }
 
 // "num_matches" are those that "num_inliers" are of: the guided ones, if there are any; those of
@@ -51,8 +51,10 @@ void add_geometry(Json& scores, const core::GeometryEvidence& geometry) {
   add("spread_ratio", geometry.spread_ratio);
   add("overlap_ratio", geometry.overlap_ratio);
   add("reprojection_rmse_px", geometry.reprojection_rmse_px);
-  if (geometry.disagreement_m) add_score(scores, "disagreement_m", *geometry.disagreement_m);
-  if (geometry.disagreement_rad) add_score(scores, "disagreement_rad", *geometry.disagreement_rad);
+  if (geometry.pose_difference_m)
+    add_score(scores, "pose_difference_m", *geometry.pose_difference_m);
+  if (geometry.pose_difference_rad)
+    add_score(scores, "pose_difference_rad", *geometry.pose_difference_rad);
 }
 
 Json scores_of(const core::Verdict& verdict) {
@@ -65,8 +67,8 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "correction_rad", evidence.odometry->correction_rad);
     add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
   }
-  if (evidence.rival) add_rival(scores, *evidence.rival);
-  if (evidence.other_place) add_other_place(scores, *evidence.other_place);
+  if (evidence.competing_loop) add_competing_loop(scores, *evidence.competing_loop);
+  if (evidence.competing_place) add_competing_place(scores, *evidence.competing_place);
   if (evidence.sequence) {
     scores["query_view"] = evidence.sequence->query_view;
     scores["match_view"] = evidence.sequence->match_view;
@@ -100,9 +102,8 @@ Json entry_of(const core::LedgerRow& row) {
                 {"match_from_query", pose_of(row.verdict)}};
   const core::Candidate& candidate = row.candidate;
   if (candidate.query.session() != candidate.match.session()) add_sessions(entry, candidate);
-  if (row.candidate.is_foretold) entry["is_foretold"] = true;
-  if (row.candidate.is_lost) entry["is_lost"] = true;
-  if (row.candidate.is_by_features) entry["is_by_features"] = true;
+  if (candidate.origin != core::Origin::kRetrieved)
+    entry["origin"] = core::name_of(candidate.origin);
   const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
   if (loop != nullptr && loop->is_by_hand) entry["is_by_hand"] = true;
   if (loop != nullptr && loop->overruled.is_valid()) entry["overruled"] = loop->overruled.index();
@@ -125,7 +126,7 @@ std::string name_of_match(const core::Candidate& candidate) {
 std::string loops_json(const core::Ledger& ledger, bool is_scale_unknown) {
   Json candidates = Json::array();
   for (const core::LedgerRow* row : final_rows(ledger)) candidates.push_back(entry_of(*row));
-  Json document = {{"version", 1}, {"candidates", std::move(candidates)}};
+  Json document = {{"version", kLoopsVersion}, {"candidates", std::move(candidates)}};
   if (is_scale_unknown) document["scale"] = "unknown";
   return dumped(document, 1) + "\n";
 }
@@ -134,16 +135,6 @@ std::string ledger_row_json(const core::LedgerRow& row) {
   Json entry = entry_of(row);
   if (row.candidate.query.session() != 0) add_sessions(entry, row.candidate);
   return dumped(entry, -1);
-}
-
-std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger) {
-  std::vector<ScoredPair> pairs;
-  for (const core::LedgerRow* row : final_rows(ledger))
-    if (core::is_loop(row->verdict))
-      pairs.push_back({row->candidate.query, row->candidate.match, row->candidate.similarity});
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const ScoredPair& a, const ScoredPair& b) { return a.query < b.query; });
-  return pairs;
 }
 
 std::string pairs_text(const std::vector<ScoredPair>& pairs) {

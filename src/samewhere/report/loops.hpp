@@ -11,14 +11,17 @@ namespace samewhere::report {
 // How a person is told of the match: its index, and of which session it is if not of the query's.
 std::string name_of_match(const core::Candidate& candidate);
 
-// loops.json, version 1: for each candidate its last verdict with stage, reason, every score of its
+// Of loops.json. Version 1 had three flags instead of "origin" and other names of the checks
+// consistency ("agreement") and competing ("rival") and of their scores; it is still read.
+inline constexpr int kLoopsVersion = 2;
+
+// loops.json: for each candidate its last verdict with stage, reason, every score of its
 // Evidence by name, and match_from_query as [tx, ty, tz, qx, qy, qz, qw] or null. Scores that are
 // not finite are left out; those of a geometry that was not found are null. "num_inliers" are of
 // "num_matches", which are those around the pose found; "num_first_matches": of the descriptors
-// alone, if these are others. "is_foretold": true where no search found the candidate,
-// "is_by_features": true where it was found by its features and not by its looks, "is_lost": true
-// where nobody knew where the view was taken; "is_by_hand": true where a person accepted it;
-// "overruled": the first of the loops that went for its sake; "query_session" and "match_session"
+// alone, if these are others. "origin": core::name_of(Origin), absent for "retrieved";
+// "is_by_hand": true where it was accepted by `ledger force`; "overruled": the first of the loops
+// that were withdrawn in its favour; "query_session" and "match_session"
 // where the match is a frame of an earlier session, one of the map that the run started in. With
 // "scale": "unknown" where lengths are in map units, not metres.
 std::string loops_json(const core::Ledger& ledger, bool is_scale_unknown = false);
@@ -33,9 +36,6 @@ struct ScoredPair {
   core::FrameId match;
   double score = 0.0;  // finite
 };
-
-// The loops of a ledger, scored by similarity, in the order of the queries.
-std::vector<ScoredPair> accepted_pairs(const core::Ledger& ledger);
 
 // Lines "query match score"; the score has all digits it needs to be read back as it was.
 std::string pairs_text(const std::vector<ScoredPair>& pairs);

@@ -9,6 +9,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/report/loops.hpp>
 #include <samewhere/report/loops_read.hpp>
 
 namespace samewhere::report {
@@ -28,13 +29,8 @@ std::uint64_t index_of(const Json& json) {
 class Entry {
  public:
   Entry(const Json& json, std::size_t position) : json_(json), scores_(json.at("scores")) {
-    row_.candidate = {core::CandidateId(position),
-                      frame("query"),
-                      frame("match"),
-                      scores_.at("similarity").get<double>(),
-                      json.value("is_foretold", false),
-                      json.value("is_lost", false),
-                      json.value("is_by_features", false)};
+    row_.candidate = {core::CandidateId(position), frame("query"), frame("match"),
+                      scores_.at("similarity").get<double>(), origin()};
   }
 
   core::LedgerRow row() && {
@@ -57,6 +53,29 @@ class Entry {
   }
 
  private:
+  core::Origin origin() const {
+    if (!json_.contains("origin")) return origin_of_version_1();
+    const auto name = json_.at("origin").get<std::string>();
+    const auto found =
+        std::find_if(std::begin(core::kAllOrigins), std::end(core::kAllOrigins),
+                     [&](core::Origin origin) { return core::name_of(origin) == name; });
+    if (found == std::end(core::kAllOrigins))
+      throw core::InputError(
+          fmt::format("\"origin\" is \"{}\"; expected \"retrieved\", \"visual "
+                      "words\", \"neighbour\", \"predicted\" or "
+                      "\"relocalization\"",
+                      name));
+    return *found;
+  }
+
+  // Predicted pairs and neighbours had one flag.
+  core::Origin origin_of_version_1() const {
+    if (json_.value("is_lost", false)) return core::Origin::kRelocalization;
+    if (json_.value("is_foretold", false)) return core::Origin::kPredicted;
+    return json_.value("is_by_features", false) ? core::Origin::kVisualWords
+                                                : core::Origin::kRetrieved;
+  }
+
   core::FrameId frame(const char* name) const {
     return core::FrameId(index_of(json_.at(name)),
                          json_.value(std::string(name) + "_session", std::uint16_t{0}));
@@ -67,14 +86,26 @@ class Entry {
     return core::CandidateId(index_of(index), row_.candidate.query.session());
   }
 
-  std::optional<double> score(const char* name) const {
+  // The name of a score in the file, where version 1 had another.
+  const char* known(const char* name, const char* name_in_version_1) const {
+    return scores_.contains(name) ? name : name_in_version_1;
+  }
+
+  std::optional<double> score(const std::string& name) const {
     const auto found = scores_.find(name);
     if (found == scores_.end() || found->is_null()) return std::nullopt;
     return found->get<double>();
   }
 
+  std::string stage_name() const {
+    auto name = json_.at("stage").get<std::string>();
+    if (name == "agreement") return "consistency";  // in version 1
+    if (name == "rival") return "competing";
+    return name;
+  }
+
   core::Refusal stage() const {
-    const auto name = json_.at("stage").get<std::string>();
+    const std::string name = stage_name();
     const auto found =
         std::find_if(std::begin(core::kAllRefusals), std::end(core::kAllRefusals),
                      [&](core::Refusal refusal) { return core::name_of(refusal) == name; });
@@ -99,26 +130,35 @@ class Entry {
     if (const auto squared = score("mahalanobis_squared"))
       evidence.odometry = {score("correction_m").value_or(0.0),
                            score("correction_rad").value_or(0.0), *squared};
-    if (scores_.contains("rival")) evidence.rival = rival();
-    if (scores_.contains("other_place"))
-      evidence.other_place = {.frame = core::FrameId(index_of(scores_.at("other_place"))),
-                              .num_inliers = scores_.at("other_place_inliers").get<int>(),
-                              .apart_m = score("other_place_apart_m").value_or(0.0),
-                              .apart_rad = score("other_place_apart_rad").value_or(0.0)};
+    if (scores_.contains("competing_loop"))
+      evidence.competing_loop = competing_loop("competing_loop", "competing_loop_first");
+    else if (scores_.contains("rival"))
+      evidence.competing_loop = competing_loop("rival", "rival_first_loop");
+    if (scores_.contains("competing_place"))
+      evidence.competing_place = competing_place("competing_place");
+    else if (scores_.contains("other_place"))
+      evidence.competing_place = competing_place("other_place");
     if (scores_.contains("query_view")) evidence.sequence = sequence();
     return evidence;
   }
 
-  core::RivalEvidence rival() const {
-    core::RivalEvidence rival{
-        .frame = core::FrameId(index_of(scores_.at("rival"))),
-        .apart_m = score("rival_apart_m").value_or(0.0),
-        .apart_rad = score("rival_apart_rad").value_or(0.0),
-        .mahalanobis_squared = score("rival_mahalanobis_squared").value_or(0.0),
-        .gain = score("rival_gain")};
-    if (scores_.contains("rival_first_loop"))
-      rival.first_loop = candidate(scores_.at("rival_first_loop"));
-    return rival;
+  core::CompetingLoopEvidence competing_loop(const std::string& name,
+                                             const std::string& first_loop) const {
+    core::CompetingLoopEvidence loop{
+        .frame = core::FrameId(index_of(scores_.at(name))),
+        .apart_m = score(name + "_apart_m").value_or(0.0),
+        .apart_rad = score(name + "_apart_rad").value_or(0.0),
+        .mahalanobis_squared = score(name + "_mahalanobis_squared").value_or(0.0),
+        .gain = score(name + "_gain")};
+    if (scores_.contains(first_loop)) loop.first_loop = candidate(scores_.at(first_loop));
+    return loop;
+  }
+
+  core::CompetingPlaceEvidence competing_place(const std::string& name) const {
+    return {.frame = core::FrameId(index_of(scores_.at(name))),
+            .num_inliers = scores_.at(name + "_inliers").get<int>(),
+            .apart_m = score(name + "_apart_m").value_or(0.0),
+            .apart_rad = score(name + "_apart_rad").value_or(0.0)};
   }
 
   core::SequenceEvidence sequence() const {
@@ -142,11 +182,11 @@ class Entry {
     geometry.overlap_ratio = score("overlap_ratio").value_or(0.0);
     geometry.reprojection_rmse_px = score("reprojection_rmse_px").value_or(0.0);
     geometry.match_from_query = pose();
-    geometry.disagreement_m = score("disagreement_m");
-    geometry.disagreement_rad = score("disagreement_rad");
+    geometry.pose_difference_m = score(known("pose_difference_m", "disagreement_m"));
+    geometry.pose_difference_rad = score(known("pose_difference_rad", "disagreement_rad"));
     // a number without end is left out of the file
-    if (!geometry.disagreement_m && json_.at("stage") == "agreement")
-      geometry.disagreement_m = std::numeric_limits<double>::infinity();
+    if (!geometry.pose_difference_m && stage_name() == "consistency")
+      geometry.pose_difference_m = std::numeric_limits<double>::infinity();
     return geometry;
   }
 
@@ -181,7 +221,8 @@ class Document {
     const Json rest = Json::parse(text, visit);
     is_parsed_ = true;
     const int version = rest.at("version").get<int>();
-    if (version != 1) throw core::InputError(fmt::format("version {}; expected 1", version));
+    if (version != 1 && version != kLoopsVersion)
+      throw core::InputError(fmt::format("version {}; expected 1 or {}", version, kLoopsVersion));
     rest.at("candidates");
     return std::move(ledger_);
   }

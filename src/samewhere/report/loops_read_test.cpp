@@ -76,25 +76,23 @@ TEST_F(LoopsRead, AMatchOfAnEarlierSessionStaysOne) {
 }
 
 TEST_F(LoopsRead, APoseThatOneViewAloneFindsStaysApartWithoutEnd) {
-  core::LedgerRow row = refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kAgreement,
+  core::LedgerRow row = refused_row(candidate(0, 9, 2, 0.8), core::Refusal::kConsistency,
                                     evidence(0.8, 100, 50), "only one view");
-  std::get<core::Rejection>(row.verdict).evidence.geometry->disagreement_m =
+  std::get<core::Rejection>(row.verdict).evidence.geometry->pose_difference_m =
       std::numeric_limits<double>::infinity();
   const core::Ledger found = read(loops_json({row}));
-  EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->disagreement_m,
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->pose_difference_m,
             std::numeric_limits<double>::infinity());
 }
 
-TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
-  core::Evidence waiting = evidence(0.8, 100, 50);
-  waiting.sequence =
+TEST_F(LoopsRead, SequenceAndOriginAreReadBack) {
+  core::Evidence pending = evidence(0.8, 100, 50);
+  pending.sequence =
       core::SequenceEvidence{.query_view = 9, .match_view = 2, .num_views = 5, .num_inliers = 200};
   core::Candidate about = candidate(0, 9, 2, 0.8);
-  about.is_foretold = true;
-  about.is_lost = true;
-  about.is_by_features = true;
+  about.origin = core::Origin::kPredicted;
   const core::Ledger found = read(loops_json(
-      {{about, core::Ambiguous{.candidate = about.id, .evidence = waiting, .reason = "so far"}}}));
+      {{about, core::Ambiguous{.candidate = about.id, .evidence = pending, .reason = "so far"}}}));
   EXPECT_EQ(core::reason_of(found.at(0).verdict), "so far");
   const auto& sequence = core::evidence_of(found.at(0).verdict).sequence;
   ASSERT_TRUE(sequence);
@@ -103,63 +101,100 @@ TEST_F(LoopsRead, WhatTheViewsAroundSaidIsReadBack) {
   EXPECT_EQ(sequence->num_views, 5);
   EXPECT_EQ(sequence->num_inliers, 200);
   EXPECT_FALSE(sequence->is_over);
-  EXPECT_TRUE(found.at(0).candidate.is_foretold);
-  EXPECT_TRUE(found.at(0).candidate.is_lost);
-  EXPECT_TRUE(found.at(0).candidate.is_by_features);
+  EXPECT_EQ(found.at(0).candidate.origin, core::Origin::kPredicted);
   EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->overlap_ratio, 0.75);
 }
 
-TEST_F(LoopsRead, ARivalIsReadBack) {
-  core::Evidence torn = evidence(0.8, 100, 50);
-  torn.rival = core::RivalEvidence{
+TEST_F(LoopsRead, ACompetingLoopIsReadBack) {
+  core::Evidence evidence_of_both = evidence(0.8, 100, 50);
+  evidence_of_both.competing_loop = core::CompetingLoopEvidence{
       .frame = core::FrameId(3), .apart_m = 1.8, .apart_rad = 0.02, .mahalanobis_squared = 250.0};
   const core::Candidate about = candidate(0, 9, 2, 0.8);
   const std::string text = loops_json({{about, core::Ambiguous{.candidate = about.id,
-                                                               .evidence = torn,
-                                                               .stage = core::Refusal::kRival,
+                                                               .evidence = evidence_of_both,
+                                                               .stage = core::Refusal::kCompeting,
                                                                .reason = "two places"}}});
   const core::Ledger found = read(text);
   EXPECT_EQ(loops_json(found), text);
-  EXPECT_EQ(core::stage_of(found.at(0).verdict), "rival");
-  EXPECT_EQ(core::evidence_of(found.at(0).verdict).rival->mahalanobis_squared, 250.0);
+  EXPECT_EQ(core::stage_of(found.at(0).verdict), "competing");
+  EXPECT_EQ(core::evidence_of(found.at(0).verdict).competing_loop->mahalanobis_squared, 250.0);
 }
 
-TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithWhatSpokeForIt) {
-  core::Evidence torn = evidence(0.8, 100, 50);
-  torn.rival = core::RivalEvidence{.frame = core::FrameId(3),
-                                   .apart_m = 1.8,
-                                   .apart_rad = 0.02,
-                                   .mahalanobis_squared = 250.0,
-                                   .first_loop = core::CandidateId(4),
-                                   .gain = 9.5};
+TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithItsGain) {
+  core::Evidence evidence_of_both = evidence(0.8, 100, 50);
+  evidence_of_both.competing_loop = core::CompetingLoopEvidence{.frame = core::FrameId(3),
+                                                                .apart_m = 1.8,
+                                                                .apart_rad = 0.02,
+                                                                .mahalanobis_squared = 250.0,
+                                                                .first_loop = core::CandidateId(4),
+                                                                .gain = 9.5};
   const core::Candidate about = candidate(0, 9, 2, 0.8);
-  core::LoopClosure loop{.candidate = about.id, .evidence = torn};
+  core::LoopClosure loop{.candidate = about.id, .evidence = evidence_of_both};
   loop.overruled = core::CandidateId(4);
   const std::string text = loops_json({{about, loop}});
   const core::Ledger found = read(text);
   EXPECT_EQ(loops_json(found), text);
   const auto& read_back = std::get<core::LoopClosure>(found.at(0).verdict);
   EXPECT_EQ(read_back.overruled, core::CandidateId(4));
-  EXPECT_EQ(read_back.evidence.rival->first_loop, core::CandidateId(4));
-  EXPECT_EQ(read_back.evidence.rival->gain, 9.5);
+  EXPECT_EQ(read_back.evidence.competing_loop->first_loop, core::CandidateId(4));
+  EXPECT_EQ(read_back.evidence.competing_loop->gain, 9.5);
   EXPECT_THAT(core::reason_of(found.at(0).verdict),
               HasSubstr("the place of frame 3 at 1.80 m: odometry supports"));
 }
 
-TEST_F(LoopsRead, AnotherPlaceThatExplainsTheViewIsReadBack) {
-  core::Evidence torn = evidence(0.8, 100, 50);
-  torn.other_place = core::OtherPlaceEvidence{
+TEST_F(LoopsRead, ACompetingPlaceIsReadBack) {
+  core::Evidence evidence_of_both = evidence(0.8, 100, 50);
+  evidence_of_both.competing_place = core::CompetingPlaceEvidence{
       .frame = core::FrameId(3), .num_inliers = 49, .apart_m = 5.9, .apart_rad = 0.02};
   const core::Candidate about = candidate(0, 9, 2, 0.8);
   const std::string text =
-      loops_json({{about, core::Ambiguous{about.id, torn, core::Refusal::kRival, "two places"}}});
+      loops_json({{about, core::Ambiguous{about.id, evidence_of_both, core::Refusal::kCompeting,
+                                          "two places"}}});
   const core::Ledger found = read(text);
   EXPECT_EQ(loops_json(found), text);
-  const auto& other = core::evidence_of(found.at(0).verdict).other_place;
+  const auto& other = core::evidence_of(found.at(0).verdict).competing_place;
   ASSERT_TRUE(other);
   EXPECT_EQ(other->frame, core::FrameId(3));
   EXPECT_EQ(other->num_inliers, 49);
   EXPECT_EQ(other->apart_m, 5.9);
+}
+
+TEST_F(LoopsRead, Version1IsReadUnderTheNamesOfToday) {
+  const auto ledger_of = [&](const std::string& flag, const std::string& stage,
+                             const std::string& scores) {
+    return read(
+        R"({"version": 1, "candidates": [{"query": 9, "match": 2, "verdict": "AMBIGUOUS", )" +
+        flag + R"("stage": ")" + stage + R"(", "reason": "", "scores": {"similarity": 0.8)" +
+        scores + R"(}, "match_from_query": null}]})");
+  };
+  const auto origin_of = [&](const std::string& flag) {
+    return ledger_of(flag, "sequence", "").at(0).candidate.origin;
+  };
+  EXPECT_EQ(origin_of(""), core::Origin::kRetrieved);
+  EXPECT_EQ(origin_of(R"("is_foretold": true, )"), core::Origin::kPredicted);
+  EXPECT_EQ(origin_of(R"("is_by_features": true, )"), core::Origin::kVisualWords);
+  EXPECT_EQ(origin_of(R"("is_lost": true, "is_by_features": true, )"),
+            core::Origin::kRelocalization);
+  const auto row = ledger_of("", "rival",
+                             R"(, "rival": 3, "rival_mahalanobis_squared": 250, )"
+                             R"("rival_first_loop": 4, "rival_gain": 9.5, )"
+                             R"("other_place": 5, "other_place_inliers": 49, "num_matches": 60, )"
+                             R"("num_inliers": 50, "disagreement_m": 0.25)")
+                       .at(0);
+  EXPECT_EQ(core::stage_of(row.verdict), "competing");
+  const core::Evidence& evidence = core::evidence_of(row.verdict);
+  EXPECT_EQ(evidence.competing_loop->mahalanobis_squared, 250.0);
+  EXPECT_EQ(evidence.competing_loop->first_loop, core::CandidateId(4));
+  EXPECT_EQ(evidence.competing_loop->gain, 9.5);
+  EXPECT_EQ(evidence.competing_place->num_inliers, 49);
+  EXPECT_EQ(evidence.geometry->pose_difference_m, 0.25);
+  EXPECT_EQ(core::stage_of(ledger_of("", "agreement", "").at(0).verdict), "consistency");
+}
+
+TEST_F(LoopsRead, AnUnknownOriginIsRefused) {
+  EXPECT_THAT(complaint(R"({"version": 2, "candidates": [{"query": 9, "match": 2, "origin": "found",
+                            "verdict": "NOT", "scores": {"similarity": 0.8}}]})"),
+              HasSubstr("\"origin\" is \"found\"; expected"));
 }
 
 TEST_F(LoopsRead, WhatIsNoCandidateTakesNoMemory) {
@@ -184,7 +219,8 @@ TEST_F(LoopsRead, AFileThatIsNoneIsRefusedInOneLine) {
   const std::string text = loops_json(sample_ledger());
   for (const std::size_t length : {std::size_t{0}, text.size() / 2, text.size() - 3})
     EXPECT_THAT(complaint(text.substr(0, length)), HasSubstr(path_.string() + ": "));
-  EXPECT_THAT(complaint(R"({"version": 2, "candidates": []})"), HasSubstr("version 2; expected 1"));
+  EXPECT_THAT(complaint(R"({"version": 3, "candidates": []})"),
+              HasSubstr("version 3; expected 1 or 2"));
   EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": 1}]})"),
               HasSubstr("candidate 0: "));
   EXPECT_THAT(complaint(R"({"version": 1, "candidates": [{"query": 1, "match": 0, "verdict": "NOT",

@@ -65,12 +65,13 @@ TEST_F(Write, AnEmptyRunHasItsFilesToo) {
 TEST_F(Write, RecognitionAloneLeavesMatchesAndAcceptedPairs) {
   RunRecord record = sample_record();
   record.frames.clear();
-  write_recognition(record, {{core::FrameId(305), core::FrameId(24), 0.9}},
-                    accepted_pairs(record.ledger), first_);
+  const ScoredPair first{core::FrameId(305), core::FrameId(24), 0.9};
+  const ScoredPair second{core::FrameId(306), core::FrameId(25), 0.9};
+  write_recognition(record, {first}, {first, second}, first_);
   EXPECT_EQ(names_in(first_), (std::set<std::string>{"matches.txt", "accepted.txt", "loops.json",
                                                      "config.yaml", "timing.json", "report.html"}));
   EXPECT_EQ(core::read_file(first_ / "matches.txt"), "305 24 0.9\n");
-  EXPECT_EQ(core::read_file(first_ / "accepted.txt"), "305 24 0.9\n306 25 0.9\n307 26 0.9\n");
+  EXPECT_EQ(core::read_file(first_ / "accepted.txt"), "305 24 0.9\n306 25 0.9\n");
   EXPECT_EQ(core::read_file(first_ / "report.html").find("The path"), std::string::npos);
 }
 

@@ -11,7 +11,6 @@
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/retrieve/retriever.hpp>
 #include <samewhere/retrieve/search.hpp>
-#include <samewhere/retrieve/store_file.hpp>
 
 namespace samewhere::retrieve {
 namespace {
@@ -95,7 +94,7 @@ std::vector<FoundView> Retriever::found_by(const core::Descriptor& descriptor,
     });
     if (is_known) continue;
     found.push_back(view_at(one.position));
-    found.back().is_by_features = true;
+    found.back().origin = core::Origin::kVisualWords;
   }
   return found;
 }
@@ -119,22 +118,6 @@ std::vector<ScoredPosition> Retriever::scored(const core::Descriptor& descriptor
   return sampled_search(store_, {descriptor.unit, num_allowed}, config_, random);
 }
 
-std::vector<core::Candidate> Retriever::query(const core::Descriptor& descriptor) const {
-  return compare(descriptor, search(descriptor));
-}
-
-void Retriever::save(const std::filesystem::path& path) const {
-  core::require(describer_checksum_.has_value(), "there are views to save");
-  save_store(store_, *describer_checksum_, path);
-}
-
-void Retriever::load(const std::filesystem::path& path, std::uint64_t describer_checksum) {
-  core::require(num_views() == 0, "views are loaded into an empty retriever");
-  store_ = load_store(path, describer_checksum, {config_.group_size, config_.queue_size});
-  for (int i = 0; words_ && i < num_views(); ++i) words_->append({});
-  describer_checksum_ = describer_checksum;
-}
-
 void Retriever::check(const core::Descriptor& descriptor) const {
   core::require(descriptor.frame.is_valid(), "a descriptor names its frame");
   core::require(!descriptor.unit.empty() && core::is_unit_or_zero(descriptor.unit),
@@ -153,7 +136,7 @@ std::vector<core::Candidate> compare(const core::Descriptor& query,
     candidates.push_back({.query = query.frame,
                           .match = view.frame,
                           .similarity = core::ncc(query.unit, view.unit),
-                          .is_by_features = view.is_by_features});
+                          .origin = view.origin});
   }
   std::sort(
       candidates.begin(), candidates.end(), [](const core::Candidate& a, const core::Candidate& b) {

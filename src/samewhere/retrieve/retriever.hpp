@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -19,7 +18,7 @@ namespace samewhere::retrieve {
 struct FoundView {
   core::FrameId frame;
   std::vector<float> unit;
-  bool is_by_features = false;  // not by its looks
+  core::Origin origin = core::Origin::kRetrieved;  // or kVisualWords
 };
 
 // Exact similarity of the views found: candidates with their NCC, eq. (8)-(13), most similar first,
@@ -56,21 +55,10 @@ class Retriever {
   // retrieves, config.shortlist at most.
   std::vector<FoundView> shortlist(const core::Descriptor& descriptor,
                                    const cv::Mat& features = {}) const;
-  // The search and then the exact similarity.
-  std::vector<core::Candidate> query(const core::Descriptor& descriptor) const;
 
   int num_views() const { return store_.num_vectors(); }
   // As it was added; position 0 is the oldest.
   core::Descriptor view(int position) const;
-
-  // Writes all views to a file, whole or not at all (store_file.hpp). There is at least one, or
-  // ContractError. Throws InputError if the file cannot be written.
-  void save(const std::filesystem::path& path) const;
-  // Takes the views of such a file as if they had been added one by one; the retriever is empty, or
-  // ContractError. Views added later must have later frames: those of a later session have, and to
-  // them everything in the file is older than any window. Throws InputError if the file cannot be
-  // used or was written with another describer than the one with this checksum.
-  void load(const std::filesystem::path& path, std::uint64_t describer_checksum);
 
  private:
   void check(const core::Descriptor& descriptor) const;

@@ -8,8 +8,8 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/file.hpp>
-#include <samewhere/optimize/any_start.hpp>
 #include <samewhere/optimize/g2o_file.hpp>
+#include <samewhere/optimize/initial_guesses.hpp>
 #include <samewhere/report/graph_plan.hpp>
 #include <samewhere/report/table.hpp>
 #include <samewhere/run/graph_file.hpp>
@@ -17,15 +17,13 @@
 namespace samewhere::run {
 namespace {
 
-constexpr double kAccepted = 0.5;  // of a loop's weight
-
 std::size_t num_loops(const optimize::PoseGraph& graph) {
   return static_cast<std::size_t>(std::count_if(graph.edges.begin(), graph.edges.end(),
                                                 [](const auto& edge) { return edge.is_loop; }));
 }
 
 std::size_t num_parts(const optimize::PoseGraph& graph) {
-  const std::vector<int> parts = optimize::parts_of(graph);
+  const std::vector<int> parts = optimize::connected_components(graph);
   return std::set<int>(parts.begin(), parts.end()).size();
 }
 
@@ -38,7 +36,7 @@ std::size_t num_alone(const optimize::PoseGraph& graph) {
 // A graph that was solved, and how.
 struct Solved {
   const optimize::PoseGraph& graph;
-  const optimize::AnyStartSummary& summary;
+  const optimize::BestOfGuesses& summary;
   double g2o_chi2_before = 0.0;
   double seconds = 0.0;
 };
@@ -73,7 +71,8 @@ double g2o_chi2(const optimize::PoseGraph& graph, const std::vector<double>& wei
 std::vector<report::Figure> figures_of_solution(const Solved& solved) {
   const optimize::PoseGraphSummary& summary = solved.summary.solution;
   std::size_t refused = 0;
-  for (const double weight : summary.weights) refused += weight < kAccepted ? 1 : 0;
+  for (const double weight : summary.weights)
+    refused += weight < optimize::kMinInlierWeight ? 1 : 0;
   return {{"cost before / after",
            fmt::format("{:.6g} / {:.6g} (half of the squared errors; before: of all edges, after: "
                        "of accepted edges)",
@@ -83,7 +82,7 @@ std::vector<report::Figure> figures_of_solution(const Solved& solved) {
                        solved.g2o_chi2_before, g2o_chi2(solved.graph, summary.weights))},
           {"loops accepted / rejected",
            fmt::format("{} / {}", num_loops(solved.graph) - refused, refused)},
-          {"initial values", std::string(name_of(solved.summary.start))},
+          {"initial values", std::string(name_of(solved.summary.guess))},
           {"iterations", std::to_string(summary.num_iterations)},
           {"converged", summary.has_converged ? "yes" : "no, the iterations ran out"},
           {"time", fmt::format("{:.2f} s", solved.seconds)}};
@@ -108,9 +107,9 @@ report::GraphRecord record_of(const optimize::PoseGraph& graph, std::vector<core
   record.is_planar = graph.is_planar;
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const optimize::PoseEdge& edge = graph.edges[i];
-    auto& pairs = !edge.is_loop             ? record.path
-                  : weights[i] >= kAccepted ? record.accepted
-                                            : record.rejected;
+    auto& pairs = !edge.is_loop                              ? record.path
+                  : weights[i] >= optimize::kMinInlierWeight ? record.accepted
+                                                             : record.rejected;
     pairs.emplace_back(edge.a, edge.b);
   }
   return record;
@@ -125,7 +124,7 @@ std::vector<report::Figure> optimize_graph(const std::filesystem::path& file,
   std::vector<core::Rigid3> before = read.graph.world_from_node;
   const double g2o_chi2_before = g2o_chi2(read.graph, {});
   const auto start = std::chrono::steady_clock::now();
-  const optimize::AnyStartSummary solved = solve_from_any_start(read.graph, config);
+  const optimize::BestOfGuesses solved = solve_from_initial_guesses(read.graph, config);
   const optimize::PoseGraphSummary& summary = solved.solution;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   if (!summary.has_converged) {

@@ -31,7 +31,7 @@ std::string name_of(const core::LedgerRow& row) {
 bool holds(const MapVersion& map, core::CandidateId cause) {
   const auto is_it = [&](const scene::LoopEdge& loop) { return loop.cause == cause; };
   return std::any_of(map.loops.begin(), map.loops.end(), is_it) ||
-         std::any_of(map.doubted_loops.begin(), map.doubted_loops.end(), is_it);
+         std::any_of(map.suspended_loops.begin(), map.suspended_loops.end(), is_it);
 }
 
 core::LedgerRow refused(core::LedgerRow row, const std::string& reason) {
@@ -61,7 +61,7 @@ core::LedgerRow known_of(const scene::LoopEdge& loop, const core::Ledger& ledger
 }
 
 void require_not_lost(const core::LedgerRow& row) {
-  if (!row.candidate.is_lost) return;
+  if (row.candidate.origin != core::Origin::kRelocalization) return;
   throw InputError(name_of(row) + " is a relocalization candidate; expected a loop candidate");
 }
 
@@ -133,7 +133,7 @@ OverriddenMap overridden(const scene::StoredMap& stored, const core::LedgerRow& 
   if (keyframes.empty() || keyframes.back().view.frame.session() != 0)
     throw InputError("its map holds several runs; expected the map of a single run");
   return override_as == Override::kReject ? with_rejected(stored.map, row, config)
-                               : with_forced(stored.map, row, ledger, config);
+                                          : with_forced(stored.map, row, ledger, config);
 }
 
 // An error of the work names the folder of the run.
@@ -165,22 +165,22 @@ OverriddenMap with_forced(const MapVersion& map, const core::LedgerRow& row,
                           const core::Ledger& ledger, const pipeline::Config& config) {
   const core::CandidateId cause = row.candidate.id;
   const scene::LoopEdge edge = forced_edge(map, row, config);
-  const auto& rival = core::evidence_of(row.verdict).rival;
+  const auto& competing = core::evidence_of(row.verdict).competing_loop;
   pipeline::Correction correction =
       pipeline::with_loop(holds(map, cause) ? pipeline::without_loop(map, cause, config) : map,
-                          edge, config, rival ? rival->first_loop : core::CandidateId());
+                          edge, config, competing ? competing->first_loop : core::CandidateId());
   const correct::Closing& closing = correction.closing;
-  if (closing.refused)
+  if (closing.rejected)
     throw InputError(
         fmt::format("{}: {}; a larger optimize.loop_chi2 or another "
                     "optimize.loop_loss would accept it",
-                    name_of(row), pipeline::bent_by(*closing.refused, config)));
+                    name_of(row), pipeline::bent_by(*closing.rejected, config)));
   OverriddenMap changed{{}, {accepted(row, config, true)}};
   for (const auto& bent : closing.withdrawn)
     changed.rows.push_back(refused(known_of(bent.loop, ledger),
                                    fmt::format("{}, since {} was accepted by hand",
                                                pipeline::bent_by(bent, config), name_of(row))));
-  for (const auto& believed : closing.believed)
+  for (const auto& believed : closing.accepted)
     if (believed.cause != cause)
       changed.rows.push_back(accepted(known_of(believed, ledger), config, false));
   changed.map = bundled(std::move(correction.map), config);

@@ -115,7 +115,7 @@ TEST_F(OverrideInRooms, WhatCannotBeForcedSaysWhy) {
   const core::LedgerRow row = row_of(lie(), 5);
   EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop already"));
   core::LedgerRow lost = row;
-  lost.candidate.is_lost = true;
+  lost.candidate.origin = core::Origin::kRelocalization;
   EXPECT_THAT(why_not_forced(lost), HasSubstr("is a relocalization candidate"));
   core::LedgerRow unmeasured = row;
   unmeasured.verdict = core::Rejection{row.candidate.id, {}, core::Refusal::kPause, "too soon"};
@@ -211,7 +211,7 @@ TEST_F(OverrideInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
   EXPECT_EQ(pair.query.image_size_px, keyframe_of(map_, row.candidate.query)->view.image_size_px);
   EXPECT_GT(pair.matches_px.size(), 20U);
   core::LedgerRow lost = row;
-  lost.candidate.is_lost = true;
+  lost.candidate.origin = core::Origin::kRelocalization;
   EXPECT_THROW(pair_of_run(folder_.root(), lost), core::InputError);
   core::LedgerRow of_no_keyframe = row;
   of_no_keyframe.candidate.match = core::FrameId(999);

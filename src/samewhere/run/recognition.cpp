@@ -5,6 +5,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/features/orb.hpp>
+#include <samewhere/pipeline/verifier_settings.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/run/recognition.hpp>
@@ -12,12 +13,6 @@
 
 namespace samewhere::run {
 namespace {
-
-// No frame has an odometry here.
-std::optional<core::OdometryEvidence> without_odometry(const core::Candidate& /*candidate*/,
-                                                       const core::Sim3& /*match_from_query*/) {
-  return std::nullopt;
-}
 
 // The time of all steps of a frame, for each frame that all of them have had.
 void add_whole_frames(core::Timings& timings) {
@@ -39,7 +34,7 @@ void add_whole_frames(core::Timings& timings) {
 
 void run_in_turn(const NextFrame& next, const RecognitionSteps& steps) {
   while (const std::optional<core::Frame> frame = next()) {
-    steps.judge(steps.search(steps.describe(*frame)));
+    steps.verify(steps.search(steps.describe(*frame)));
   }
 }
 
@@ -53,24 +48,25 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps) {
     return steps.describe(*frame);
   });
   core::StageThread<DescribedFrame, SearchedFrame> searching(described, searched, steps.search);
-  while (const std::optional<SearchedFrame> frame = searched.receive()) steps.judge(*frame);
+  while (const std::optional<SearchedFrame> frame = searched.receive()) steps.verify(*frame);
   describing.join();
   searching.join();
 }
 
-Recognition::Recognition(const pipeline::Config& config) : config_(config), detector_(config) {}
+Recognition::Recognition(const pipeline::Config& config)
+    : config_(config), detector_(config, pipeline::recognition_settings(config)) {}
 
 RecognitionSteps Recognition::steps() {
   return {.describe = [this](const core::Frame& frame) { return describe(frame); },
           .search = [this](DescribedFrame frame) { return search(std::move(frame)); },
-          .judge = [this](const SearchedFrame& frame) { judge(frame); }};
+          .verify = [this](const SearchedFrame& frame) { verify(frame); }};
 }
 
 DescribedFrame Recognition::describe(const core::Frame& frame) {
   DescribedFrame described;
   {
     const core::ScopedTimer timer(describe_timings_, "describe");
-    described.descriptor = detector_.describe(frame.id, frame.images[0]);
+    described.descriptor = detector_.index().describe(frame.id, frame.images[0]);
   }
   const core::ScopedTimer timer(describe_timings_, "features and thumbnail");
   described.view = features::extract(frame, config_.features);
@@ -80,21 +76,21 @@ DescribedFrame Recognition::describe(const core::Frame& frame) {
 
 SearchedFrame Recognition::search(DescribedFrame described) {
   const core::ScopedTimer timer(search_timings_, "search");
-  SearchedFrame searched{.found = detector_.search(described.descriptor, described.view)};
+  SearchedFrame searched{.found = detector_.index().search(described.descriptor, described.view)};
   searched.described = std::move(described);
   return searched;
 }
 
-void Recognition::judge(const SearchedFrame& searched) {
+void Recognition::verify(const SearchedFrame& searched) {
   const auto& [descriptor, view, thumbnail] = searched.described;
   std::vector<core::Candidate> candidates;
   {
-    const core::ScopedTimer timer(judge_timings_, "exact similarity");
+    const core::ScopedTimer timer(verify_timings_, "exact similarity");
     candidates = retrieve::compare(descriptor, searched.found);
   }
-  const core::ScopedTimer timer(judge_timings_, "verify");
+  const core::ScopedTimer timer(verify_timings_, "verify");
   found_.record.thumbnails[view.frame] = thumbnail;
-  keep(detector_.judge(descriptor, candidates, view, {without_odometry}));
+  keep(detector_.verify(descriptor, candidates, view, verify::WithoutMap()));
 }
 
 void Recognition::keep(const std::vector<core::LedgerRow>& rows) {
@@ -107,7 +103,7 @@ void Recognition::find_best_of_queries() {
   for (const core::LedgerRow* row : report::final_rows(found_.record.ledger))
     rows_of[row->candidate.query].push_back(*row);
   for (const auto& [query, rows] : rows_of) {
-    const core::LedgerRow& best = *pipeline::best_of_query(rows, config_.verify);
+    const core::LedgerRow& best = *verify::best_of_query(rows, config_.verify);
     const double score = verify::score(core::evidence_of(best.verdict), config_.verify);
     found_.matches.push_back({query, best.candidate.match, score});
     if (core::is_loop(best.verdict)) found_.accepted.push_back(found_.matches.back());
@@ -118,7 +114,7 @@ void Recognition::report_to(RunOutcome& outcome) && {
   keep(detector_.settle_all());
   find_best_of_queries();
   core::Timings timings;
-  for (const core::Timings* step : {&describe_timings_, &search_timings_, &judge_timings_}) {
+  for (const core::Timings* step : {&describe_timings_, &search_timings_, &verify_timings_}) {
     timings.add(*step);
   }
   add_whole_frames(timings);
@@ -128,7 +124,7 @@ void Recognition::report_to(RunOutcome& outcome) && {
   outcome.matches = std::move(found_.matches);
   outcome.accepted = std::move(found_.accepted);
   outcome.record.figures.push_back(
-      describer_figure(config_.describe, detector_.describer_checksum()));
+      describer_figure(config_.describe, detector_.index().describer_checksum()));
 }
 
 }  // namespace samewhere::run

@@ -32,12 +32,12 @@ using NextFrame = std::function<std::optional<core::Frame>()>;
 struct RecognitionSteps {
   std::function<DescribedFrame(const core::Frame&)> describe;
   std::function<SearchedFrame(DescribedFrame)> search;
-  std::function<void(const SearchedFrame&)> judge;
+  std::function<void(const SearchedFrame&)> verify;
 };
 
 // Until `next` gives nothing. What `next` or a step throws comes out.
 void run_in_turn(const NextFrame& next, const RecognitionSteps& steps);
-// The same with `next` and `describe` in one thread, `search` in another and `judge` in the
+// The same with `next` and `describe` in one thread, `search` in another and `verify` in the
 // caller's, a few frames behind each other. The steps share nothing but what they hand on.
 void run_in_threads(const NextFrame& next, const RecognitionSteps& steps);
 
@@ -58,7 +58,7 @@ class Recognition {
  private:
   DescribedFrame describe(const core::Frame& frame);
   SearchedFrame search(DescribedFrame described);
-  void judge(const SearchedFrame& searched);
+  void verify(const SearchedFrame& searched);
   void keep(const std::vector<core::LedgerRow>& rows);
   void find_best_of_queries();
 
@@ -67,8 +67,8 @@ class Recognition {
   // one for each step, since each may have its own thread
   core::Timings describe_timings_;
   core::Timings search_timings_;
-  core::Timings judge_timings_;
-  RunOutcome found_;  // of judge()
+  core::Timings verify_timings_;
+  RunOutcome found_;  // of verify()
 };
 
 }  // namespace samewhere::run

@@ -55,7 +55,7 @@ double dawdle(core::Random& random) {
 RecognitionSteps slowed(const RecognitionSteps& steps, std::uint64_t seed) {
   core::Random describing(core::seed_of(seed, "describe", 0));
   core::Random searching(core::seed_of(seed, "search", 0));
-  core::Random judging(core::seed_of(seed, "judge", 0));
+  core::Random verifying(core::seed_of(seed, "judge", 0));
   return {.describe =
               [steps, random = describing](const core::Frame& frame) mutable {
                 EXPECT_GE(dawdle(random), 0.0);
@@ -66,10 +66,10 @@ RecognitionSteps slowed(const RecognitionSteps& steps, std::uint64_t seed) {
                 EXPECT_GE(dawdle(random), 0.0);
                 return steps.search(std::move(frame));
               },
-          .judge =
-              [steps, random = judging](const SearchedFrame& frame) mutable {
+          .verify =
+              [steps, random = verifying](const SearchedFrame& frame) mutable {
                 EXPECT_GE(dawdle(random), 0.0);
-                steps.judge(frame);
+                steps.verify(frame);
               }};
 }
 

@@ -3,7 +3,7 @@
 
 #include <samewhere/run/replay.hpp>
 #include <samewhere/verify/decide.hpp>
-#include <samewhere/verify/waiting.hpp>
+#include <samewhere/verify/pending_candidates.hpp>
 
 namespace samewhere::run {
 namespace {
@@ -14,13 +14,13 @@ bool is_refused_by_graph(const core::Verdict& verdict) {
          (refused->stage == core::Refusal::kGraph || refused->stage == core::Refusal::kWithdrawn);
 }
 
-// Closed by a person's word: a loop whatever the thresholds.
+// Closed by `ledger force`: a loop whatever the thresholds.
 bool is_by_hand(const core::Verdict& verdict) {
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
   return loop != nullptr && loop->is_by_hand;
 }
 
-bool is_waiting(const core::Verdict& verdict) {
+bool is_pending(const core::Verdict& verdict) {
   const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
   return ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence;
 }
@@ -28,7 +28,7 @@ bool is_waiting(const core::Verdict& verdict) {
 // The run stopped measuring at its own thresholds.
 bool is_unmeasured(const core::Evidence& evidence, const core::Verdict& after,
                    const verify::Config& config) {
-  if (is_waiting(after) && !evidence.sequence) return true;
+  if (is_pending(after) && !evidence.sequence) return true;
   if (evidence.geometry || !config.require_geometry) return false;
   const auto* refused = std::get_if<core::Rejection>(&after);
   return refused == nullptr || refused->stage == core::Refusal::kMatches;
@@ -42,9 +42,8 @@ Replay outcome_of(const core::LedgerRow& before, const core::Verdict& after,
   return core::is_loop(before.verdict) == core::is_loop(after) ? Replay::kSame : Replay::kChanged;
 }
 
-// What the views around a candidate say depends on which other candidates pass: forgotten, to be
-// found anew.
-core::Evidence without_neighbours(core::Evidence evidence) {
+// The sequence of a candidate depends on which other candidates pass: it is computed again.
+core::Evidence without_sequence(core::Evidence evidence) {
   if (evidence.sequence) {
     evidence.sequence->num_views = 0;
     evidence.sequence->num_inliers = 0;
@@ -53,25 +52,25 @@ core::Evidence without_neighbours(core::Evidence evidence) {
   return evidence;
 }
 
-// Judges in the order of the run.
-class SecondJudge {
+// Decides in the order of the run.
+class Replayer {
  public:
-  explicit SecondJudge(const verify::Config& config) : config_(config), waiting_(config) {}
+  explicit Replayer(const verify::Config& config) : config_(config), pending_(config) {}
 
-  void judge(const core::LedgerRow& row) {
-    const core::Evidence evidence = without_neighbours(core::evidence_of(row.verdict));
+  void decide(const core::LedgerRow& row) {
+    const core::Evidence evidence = without_sequence(core::evidence_of(row.verdict));
     if (evidence.sequence && evidence.sequence->query_view > view_) {
       view_ = evidence.sequence->query_view;
-      settle(waiting_.settle(view_ - 1));  // the run has seen all views before, found or not
+      settle(pending_.settle(view_ - 1));  // the run has seen all views before, found or not
     }
-    core::Verdict verdict = decide(row.candidate, evidence, history_, config_);
+    core::Verdict verdict = verify::decide(row.candidate, evidence, history_, config_);
     if (core::is_loop(verdict)) history_.last_loop_query = row.candidate.query;
-    if (is_waiting(verdict) && evidence.sequence) waiting_.add(row.candidate, evidence);
+    if (is_pending(verdict) && evidence.sequence) pending_.add(row.candidate, evidence);
     verdicts_.insert_or_assign(row.candidate.id, std::move(verdict));
   }
 
   std::map<core::CandidateId, core::Verdict> verdicts() && {
-    settle(waiting_.settle_all());
+    settle(pending_.settle_all());
     return std::move(verdicts_);
   }
 
@@ -83,7 +82,7 @@ class SecondJudge {
 
   verify::Config config_;
   verify::History history_;
-  verify::Waiting waiting_;
+  verify::PendingCandidates pending_;
   int view_ = 0;
   std::map<core::CandidateId, core::Verdict> verdicts_;
 };
@@ -91,9 +90,9 @@ class SecondJudge {
 }  // namespace
 
 std::vector<ReplayedRow> replay(const core::Ledger& ledger, const verify::Config& config) {
-  SecondJudge judge(config);
-  for (const core::LedgerRow& row : ledger) judge.judge(row);
-  const auto verdicts = std::move(judge).verdicts();
+  Replayer replayer(config);
+  for (const core::LedgerRow& row : ledger) replayer.decide(row);
+  const auto verdicts = std::move(replayer).verdicts();
   std::vector<ReplayedRow> rows;
   for (const core::LedgerRow& row : ledger) {
     const core::Verdict& after =

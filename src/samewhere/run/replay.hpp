@@ -7,22 +7,22 @@
 
 namespace samewhere::run {
 
-// What the judge would have said with other thresholds.
+// The verdict with other thresholds.
 enum class Replay {
   kSame,        // loop or no loop, as before
   kChanged,     //
   kUnmeasured,  // the next check needs what was never measured: nobody can tell without the
                 // pictures
-  kGraph        // the judge accepted it and still does; the map that refused it is not replayed
+  kGraph        // still accepted by the verifier; the pose graph that rejected it is not replayed
 };
 
 struct ReplayedRow {
   core::LedgerRow before;
-  core::Verdict after;  // what the judge says of what was measured
+  core::Verdict after;  // on the same evidence
   Replay outcome = Replay::kSame;
 };
 
-// Judges all candidates of a finished run anew, in their order, from what was measured of them; the
+// Decides all candidates of a finished run again, in their order, from their evidence; the
 // pause after a loop follows the new verdicts.
 std::vector<ReplayedRow> replay(const core::Ledger& ledger, const verify::Config& config);
 

@@ -20,18 +20,18 @@ core::Evidence evidence(int num_inliers) {
   return evidence;
 }
 
-core::LedgerRow judged(std::uint64_t id, const core::Evidence& evidence) {
+core::LedgerRow verified(std::uint64_t id, const core::Evidence& evidence) {
   return {candidate(id), verify::decide(candidate(id), evidence, {}, {})};
 }
 
 TEST(Replay, WithTheThresholdsOfTheRunNothingChanges) {
-  const core::Ledger ledger = {judged(0, evidence(30)), judged(1, evidence(60))};
+  const core::Ledger ledger = {verified(0, evidence(30)), verified(1, evidence(60))};
   for (const auto& row : replay(ledger, {})) EXPECT_EQ(row.outcome, Replay::kSame);
 }
 
 TEST(Replay, AThresholdMovesThoseBetweenTheOldAndTheNewOne) {
-  const core::Ledger ledger = {judged(0, evidence(30)), judged(1, evidence(60)),
-                               judged(2, evidence(90))};
+  const core::Ledger ledger = {verified(0, evidence(30)), verified(1, evidence(60)),
+                               verified(2, evidence(90))};
   const auto stricter = replay(ledger, {.min_inliers = 80});
   EXPECT_EQ(stricter[0].outcome, Replay::kSame);
   EXPECT_EQ(stricter[1].outcome, Replay::kChanged);
@@ -53,8 +53,8 @@ TEST(Replay, WhatWasNeverMeasuredIsNotGuessed) {
 }
 
 TEST(Replay, ThePauseFollowsTheNewVerdicts) {
-  const core::Ledger ledger = {judged(0, evidence(60)), judged(1, evidence(60)),
-                               judged(2, evidence(60))};
+  const core::Ledger ledger = {verified(0, evidence(60)), verified(1, evidence(60)),
+                               verified(2, evidence(60))};
   const auto paused = replay(ledger, {.pause_frames = 1});
   EXPECT_TRUE(core::is_loop(paused[0].after));
   EXPECT_FALSE(core::is_loop(paused[1].after));
@@ -90,13 +90,13 @@ TEST(Replay, ASequenceIsCountedAnewFromWhoeverPassesNow) {
 TEST(Replay, WhatNeverWaitedCannotBeSaidToHaveWaitedInVain) {
   core::Evidence alone = evidence(60);
   alone.geometry->match_from_query.reset();
-  const core::LedgerRow row = judged(0, alone);
+  const core::LedgerRow row = verified(0, alone);
   EXPECT_EQ(core::stage_of(row.verdict), "pose");
   EXPECT_EQ(replay({row}, {.require_pose = false})[0].outcome, Replay::kUnmeasured);
 }
 
 TEST(Replay, WhatTheGraphRefusedStaysRefused) {
-  core::LedgerRow row = judged(0, evidence(60));
+  core::LedgerRow row = verified(0, evidence(60));
   row.verdict = core::Rejection{row.candidate.id, evidence(60), core::Refusal::kWithdrawn, "bent"};
   EXPECT_EQ(replay({row}, {})[0].outcome, Replay::kGraph);
   EXPECT_EQ(replay({row}, {.min_inliers = 80})[0].outcome, Replay::kSame);

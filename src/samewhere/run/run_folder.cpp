@@ -123,7 +123,7 @@ std::string picture_of(scene::MapFile& file, core::FrameId frame,
 
 report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::LedgerRow& row) {
   const std::filesystem::path path = folder / "map.sw";
-  if (row.candidate.is_lost)
+  if (row.candidate.origin == core::Origin::kRelocalization)
     throw core::InputError(
         fmt::format("{}: candidate {} is a relocalization candidate of frame {}, which has no "
                     "thumbnail; expected a "

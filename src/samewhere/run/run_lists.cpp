@@ -35,9 +35,7 @@ std::vector<std::string> rows_since_by_hand(const std::filesystem::path& map) {
 // A row of the map does not say which number its candidate has. nullptr: none is like that, or
 // several are.
 core::LedgerRow* find(core::Ledger& ledger, const core::Candidate& wanted) {
-  const auto key = [](const core::Candidate& c) {
-    return std::tuple(c.query, c.match, c.is_foretold, c.is_lost, c.is_by_features);
-  };
+  const auto key = [](const core::Candidate& c) { return std::tuple(c.query, c.match, c.origin); };
   core::LedgerRow* found = nullptr;
   for (core::LedgerRow& row : ledger) {
     if (key(row.candidate) != key(wanted)) continue;

@@ -132,7 +132,7 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
   findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
   findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
   for (const auto* row : rows) {
-    if (row->candidate.is_lost) continue;  // a place, no loop
+    if (row->candidate.origin == core::Origin::kRelocalization) continue;  // a place, no loop
     if (has_matches(row->verdict)) {
       findings.matching.push_back({static_cast<int>(row->candidate.query.index()),
                                    static_cast<int>(row->candidate.match.index())});
@@ -146,7 +146,8 @@ void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
   std::map<core::FrameId, FoundAgain> best;
   for (const auto* row : report::final_rows(ledger)) {
     const core::Candidate& candidate = row->candidate;
-    const bool is_told = candidate.is_lost && core::is_loop(row->verdict) &&
+    const bool is_told = candidate.origin == core::Origin::kRelocalization &&
+                         core::is_loop(row->verdict) &&
                          candidate.match.session() == candidate.query.session();
     if (!is_told || !resumed.contains(candidate.query)) continue;
     const auto found = found_again(loop_of(*row, stamp_of), findings.trajectory);

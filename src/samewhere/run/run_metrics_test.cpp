@@ -34,7 +34,7 @@ class LostAndFound : public testing::Test {
     ledger_.push_back({{.id = loop.candidate,
                         .query = core::FrameId(static_cast<std::uint64_t>(query)),
                         .match = core::FrameId(static_cast<std::uint64_t>(match)),
-                        .is_lost = true},
+                        .origin = core::Origin::kRelocalization},
                        loop});
   }
 

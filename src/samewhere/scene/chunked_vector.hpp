@@ -43,12 +43,12 @@ class ChunkedVector {
   std::pair<std::size_t, std::size_t> range_of_chunk(std::size_t k) const {
     return {k * kChunkSize, std::min((k + 1) * kChunkSize, size_)};
   }
-  // Whether chunk k of both is one and the same, and so equal without a look at it.
+  // Whether chunk k of both is the same object, and so equal without a comparison.
   bool shares_chunk(const ChunkedVector& other, std::size_t k) const {
     return chunks_[k].elements == other.chunks_[k].elements;
   }
 
-  // Equal elements that lie elsewhere, where nobody writes to them: who edits one gets a copy.
+  // Replaces a chunk by equal elements in read-only memory; an edit copies them first.
   void put_read_only(std::size_t k, const std::shared_ptr<Chunk>& elements) {
     chunks_[k] = {elements, true};
   }

@@ -8,19 +8,18 @@
 
 namespace samewhere::scene {
 
-// Landmarks that nobody has changed for a while leave memory for a file without a name. Whoever
-// reads one brings its page back until the next round; whoever changes one takes it, and those of
-// its chunk, out of the file until they rest again. For the owner of a map, in its thread.
+// Pages landmarks that were not changed for a while to a temporary file. Reading one loads its page
+// until the next round; changing one takes its chunk out of the file until it is unchanged for a
+// round again. For the owner of a map, in its thread.
 class LandmarkPages {
  public:
-  // Goes on with a round through all landmarks that takes `num_steps` such steps (0: one). A chunk
-  // that is as it was in the round before goes to the file; where there is no room it stays. The
-  // map is equal to what it was.
+  // One of `num_steps` steps (0: one) of a round through all landmarks. A chunk unchanged since the
+  // round before goes to the file; without room there it stays in memory. The map stays equal.
   void step(ChunkedVector<Landmark>& landmarks, std::size_t num_steps);
 
  private:
   using Chunk = ChunkedVector<Landmark>::Chunk;
-  // Held here, too: so whoever changes an element changes a copy, and it shows.
+  // A second owner: a change of an element copies the chunk, which shows the change.
   struct Seen {
     std::shared_ptr<const Chunk> chunk;
     std::shared_ptr<const core::PagedBlock> pages;  // none: in memory

@@ -82,19 +82,19 @@ TEST(LandmarkPages, WhereThereIsNoRoomAllStaysInMemory) {
   for (std::size_t k = 0; k < 2; ++k) EXPECT_TRUE(known.shares_chunk(before, k));
 }
 
-TEST(LandmarkPages, WhoChangesOneTakesItsChunkOutOfTheFile) {
+TEST(LandmarkPages, AChangeTakesTheChunkOutOfTheFile) {
   ChunkedVector<Landmark> known = landmarks(2 * kChunkSize);
   LandmarkPages pages;
   let_rest(pages, known);
   const ChunkedVector<Landmark> in_file = known;
   known.edit(1).observations.push_back({core::KeyframeId(9), 9});
   EXPECT_EQ(known[1].observations.back().keyframe, core::KeyframeId(9));
-  EXPECT_TRUE(is_same(in_file[1], landmark(1))) << "others see what they saw";
+  EXPECT_TRUE(is_same(in_file[1], landmark(1))) << "the copy is unchanged";
   EXPECT_TRUE(is_same(known[2], landmark(2)));
   EXPECT_TRUE(known.shares_chunk(in_file, 1));
 }
 
-TEST(LandmarkPages, NobodyWritesIntoTheFileThoughHeAloneHoldsIt) {
+TEST(LandmarkPages, TheOnlyOwnerDoesNotWriteIntoTheFile) {
   ChunkedVector<Landmark> known = landmarks(kChunkSize);
   {
     LandmarkPages pages;

@@ -9,7 +9,7 @@
 namespace samewhere::scene {
 namespace {
 
-// The reference first, then who shares most.
+// The reference first, then the most covisible keyframes.
 std::vector<core::KeyframeId> neighbourhood(const MapVersion& map, core::KeyframeId reference,
                                             int max_neighbours) {
   std::vector<core::KeyframeId> chosen = {reference};

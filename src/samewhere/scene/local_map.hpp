@@ -21,8 +21,7 @@ struct LocalMap {
   int size() const { return static_cast<int>(landmarks.size()); }
 };
 
-// How many of the keyframes that share most landmarks with the reference make its local map, and
-// how many of them are near.
+// Number of covisible keyframes of a local map, and of the nearest ones among them.
 struct Neighbours {
   int all = 0;
   int near = 0;
@@ -31,8 +30,8 @@ struct Neighbours {
 // Landmarks of the reference and of its near neighbours, ascending by id, then those of the others.
 LocalMap build_local_map(const MapVersion& map, core::KeyframeId reference, Neighbours neighbours);
 
-// The keyframe that shows most of these landmarks, however old: what lies around it is the local
-// map of who sees them. Nothing if none shows any.
+// The keyframe that observes most of these landmarks, of any age: the reference of the local map of
+// a frame that observes them. Nothing if none observes any.
 std::optional<core::KeyframeId> keyframe_showing_most(
     const MapVersion& map, const std::vector<core::LandmarkId>& landmarks);
 

@@ -6,6 +6,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/scene/map_check.hpp>
+#include <samewhere/scene/map_tables.hpp>
 #include <samewhere/scene/observations.hpp>
 
 namespace samewhere::scene {
@@ -21,7 +22,7 @@ class MapCheck {
     part_ = "the map";
     expect(num_shown_ == num_observed_, "shows a landmark at a feature that does not see it");
     check_loops(map_.loops, "loop");
-    check_loops(map_.doubted_loops, "doubted_loop");
+    check_loops(map_.suspended_loops, kSuspendedLoop);
     for (const LoopEdge& loop : map_.loops)
       expect(is_live(map_.at(loop.query)) && is_live(map_.at(loop.match)),
              "joins a keyframe that is culled");

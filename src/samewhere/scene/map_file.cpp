@@ -237,7 +237,7 @@ StoredMap MapFile::Content::load() {
     stored.map.landmarks.push_back(checked_value_of<Landmark>(row));
   });
   read_loops(kLoop, state_.num_loops, stored.map.loops);
-  read_loops(kDoubtedLoop, state_.num_doubted_loops, stored.map.doubted_loops);
+  read_loops(kSuspendedLoop, state_.num_suspended_loops, stored.map.suspended_loops);
   file_.read_list(kMerge, state_.num_merges, [&](const RowFile::Row& row) {
     stored.map.merges.push_back(value_of<Merge>(row));
   });
@@ -375,9 +375,9 @@ void MapFile::Content::write(const MapVersion& after, const MapExtras& extras) {
   write_keyframes(after, state);
   write_landmarks(after, state);
   write_loops(kLoop, map_.loops, after.loops);
-  write_loops(kDoubtedLoop, map_.doubted_loops, after.doubted_loops);
+  write_loops(kSuspendedLoop, map_.suspended_loops, after.suspended_loops);
   state.num_loops = after.loops.size();
-  state.num_doubted_loops = after.doubted_loops.size();
+  state.num_suspended_loops = after.suspended_loops.size();
   write_merges(after, state);
   write_extras(extras, state);
   state.map_number = after.number;

@@ -80,7 +80,7 @@ TEST_F(MapFiles, DamageIsFoundAndNamedWhereverItIs) {
     StoredMap stored;
     const std::string found = complaint([&] { stored = MapFile::open(path("hurt.sw")).load(); });
     if (found == "none") {
-      expect_same(stored.map, map);  // what nobody reads was hit
+      expect_same(stored.map, map);  // bytes that are not read were hit
     } else {
       ++num_found;
       EXPECT_THAT(found, HasSubstr("hurt.sw: ")) << found;

@@ -54,7 +54,7 @@ TEST_F(MapFiles, OtherSettingsAreNamedWithBothValues) {
               HasSubstr("made with describer = unknown; this run has hog"));
 }
 
-TEST_F(MapFiles, WhoIsRefusedLeavesTheBytesAsTheyAre) {
+TEST_F(MapFiles, ARefusedWriterLeavesTheFileUnchanged) {
   write_small_map();
   const std::string before = core::read_file(path());
   {

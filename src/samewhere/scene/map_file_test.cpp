@@ -37,7 +37,7 @@ TEST_F(MapFiles, WhatIsLoadedIsWhatWasSavedWhateverTheEdits) {
     file->commit(map, {});
     file.reset();
     expect_same(MapFile::open(file_path).load().map, map);
-    EXPECT_TRUE(!map.merges.empty() && !map.loops.empty() && !map.doubted_loops.empty() &&
+    EXPECT_TRUE(!map.merges.empty() && !map.loops.empty() && !map.suspended_loops.empty() &&
                 num_live(map.keyframes) < map.keyframes.size())
         << "without these it shows less";
   }

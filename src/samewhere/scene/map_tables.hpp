@@ -19,14 +19,14 @@ inline constexpr char kView[] = "view";    // of keyframes, same numbers; never 
 inline constexpr char kSlots[] = "slots";  // of keyframes, same numbers
 inline constexpr char kLandmark[] = "landmark";
 inline constexpr char kLoop[] = "loop";
-inline constexpr char kDoubtedLoop[] = "doubted_loop";
+inline constexpr char kSuspendedLoop[] = "doubted_loop";  // its name in the file
 inline constexpr char kMerge[] = "merge";
 inline constexpr char kFrame[] = "frame";            // number: the frame's id
 inline constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
 inline constexpr char kLedger[] = "ledger";          // bytes: a line of JSON
 inline constexpr char kThumbnail[] = "thumbnail";    // number: the frame's id; bytes: JPEG
-inline constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,    kView,
-                                          kSlots,  kLandmark,   kLoop,   kDoubtedLoop, kMerge,
+inline constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,      kView,
+                                          kSlots,  kLandmark,   kLoop,   kSuspendedLoop, kMerge,
                                           kFrame,  kDescriptor, kLedger, kThumbnail};
 
 // 5: thumbnails.
@@ -34,8 +34,8 @@ inline constexpr std::int64_t kMapFileVersion = 6;
 inline constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion,
                                    kTables};
 
-// How much a commit left: rows that went missing are missed (but thumbnails, on which nothing
-// hangs).
+// Number of rows after a commit, to detect missing rows (but not thumbnails, which no other row
+// names).
 struct MapState {
   std::uint64_t map_number = 0;
   std::uint64_t num_settings = 0;
@@ -43,7 +43,7 @@ struct MapState {
   std::uint64_t num_keyframes = 0;
   std::uint64_t num_landmarks = 0;
   std::uint64_t num_loops = 0;
-  std::uint64_t num_doubted_loops = 0;
+  std::uint64_t num_suspended_loops = 0;
   std::uint64_t num_merges = 0;
   std::uint64_t num_frames = 0;
   std::uint64_t num_descriptors = 0;
@@ -54,7 +54,7 @@ struct MapState {
 template <class Archive>
 void fields(Archive& archive, Value<Archive, MapState>& state) {
   archive(state.map_number, state.num_settings, state.num_rigs, state.num_keyframes,
-          state.num_landmarks, state.num_loops, state.num_doubted_loops, state.num_merges,
+          state.num_landmarks, state.num_loops, state.num_suspended_loops, state.num_merges,
           state.num_frames, state.num_descriptors, state.num_ledger_rows, state.last_frame);
 }
 

@@ -12,14 +12,15 @@
 namespace samewhere::scene {
 namespace {
 
-// The new sighting becomes the landmark's looks; its depth, if it has one, is averaged into the
-// position.
-void see_again(MapVersion& map, const Sighting& sighting) {
+// The new observation sets the landmark's descriptor; its depth, if it has one, is averaged into
+// the position.
+void add_observation(MapVersion& map, const Sighting& sighting) {
   Landmark& landmark = map.landmarks.edit(sighting.landmark.index());
   const Keyframe& keyframe = map.at(sighting.observation.keyframe);
   core::require(static_cast<std::size_t>(sighting.observation.slot) < keyframe.slots.size(),
-                "a sighting names a slot of its keyframe");
-  core::require(is_live(landmark) && is_live(keyframe), "a sighting is of what the map shows");
+                "an observation names a slot of its keyframe");
+  core::require(is_live(landmark) && is_live(keyframe),
+                "an observation joins a live landmark and a live keyframe");
   if (const auto point = features::point_in_camera(keyframe.view, sighting.observation.slot)) {
     const double weight = weight_of_depth(point->z());
     const core::Rigid3 anchor_from_body =
@@ -31,13 +32,13 @@ void see_again(MapVersion& map, const Sighting& sighting) {
         (landmark.weight + weight);
     landmark.weight += weight;
   }
-  look_as_seen(map, landmark, sighting.observation);
+  set_appearance(map, landmark, sighting.observation);
   landmark.observations.push_back(sighting.observation);
   set_slot(map, sighting.observation, landmark.id);
 }
 
-// A landmark that no keyframe shows any more goes.
-void forget(MapVersion& map, const RemovedObservation& removed) {
+// A landmark without observations is culled.
+void remove_observation(MapVersion& map, const RemovedObservation& removed) {
   Landmark& landmark = map.landmarks.edit(removed.landmark.index());
   auto& observations = landmark.observations;
   const auto found =
@@ -49,18 +50,19 @@ void forget(MapVersion& map, const RemovedObservation& removed) {
   landmark.is_culled = observations.empty();
 }
 
-// The survivor takes over what the other showed, but for pictures in which it is seen itself.
+// The survivor takes over the observations of the other, except in keyframes that observe it
+// itself.
 void merge(MapVersion& map, const Merge& merge) {
   core::require(merge.from != merge.to && is_live(map.at(merge.from)) && is_live(map.at(merge.to)),
                 "two landmarks that the map shows are merged");
   Landmark& to = map.landmarks.edit(merge.to.index());
   Landmark& from = map.landmarks.edit(merge.from.index());
   for (const auto& observation : from.observations) {
-    const bool is_seen_itself =
+    const bool is_observed =
         std::any_of(to.observations.begin(), to.observations.end(),
                     [&](const Observation& o) { return o.keyframe == observation.keyframe; });
-    set_slot(map, observation, is_seen_itself ? core::LandmarkId{} : to.id);
-    if (!is_seen_itself) to.observations.push_back(observation);
+    set_slot(map, observation, is_observed ? core::LandmarkId{} : to.id);
+    if (!is_observed) to.observations.push_back(observation);
   }
   from.merged_into = to.id;
   map.merges.push_back({merge.from, merge.to, merge.cause, map.number});
@@ -96,15 +98,15 @@ void skip_parent(const MapVersion& map, Keyframe& child) {
 
 void cull(MapVersion& map, core::KeyframeId id) {
   Keyframe& keyframe = map.keyframes.edit(id.index());
-  core::require(keyframe.odometry.has_value(), "a culled keyframe has odometry to hang on");
+  core::require(keyframe.odometry.has_value(), "a culled keyframe has an odometry parent");
   core::require(std::none_of(map.loops.begin(), map.loops.end(),
                              [&](const LoopEdge& l) { return l.query == id || l.match == id; }),
-                "a keyframe that a loop edge holds is not culled");
+                "a keyframe with a loop edge is not culled");
   for (std::size_t slot = 0; slot < keyframe.slots.size(); ++slot) {
     const core::LandmarkId shown = keyframe.slots[slot];
     if (!shown.is_valid()) continue;
-    forget(map, {shown, id});
-    hang_on_observer(map, map.landmarks.edit(shown.index()));
+    remove_observation(map, {shown, id});
+    anchor_to_observer(map, map.landmarks.edit(shown.index()));
   }
   keyframe.culled_parent_from_keyframe =
       inverse(world_from_body(map, keyframe.odometry->parent)) * keyframe.world_from_body;
@@ -115,12 +117,12 @@ void cull(MapVersion& map, core::KeyframeId id) {
   }
 }
 
-// Measured in the lengths of before: moved with the rest.
-void believe(MapVersion& map, const Edit& edit) {
-  map.doubted_loops.insert(map.doubted_loops.end(), edit.doubted_loops.begin(),
-                           edit.doubted_loops.end());
+// Measured in the scale from before the edit: added before rescale_around() corrects it.
+void add_loops(MapVersion& map, const Edit& edit) {
+  map.suspended_loops.insert(map.suspended_loops.end(), edit.suspended_loops.begin(),
+                             edit.suspended_loops.end());
   for (const auto& loop : edit.loops) {
-    std::erase_if(map.doubted_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
+    std::erase_if(map.suspended_loops, [&](const LoopEdge& o) { return o.cause == loop.cause; });
     map.loops.push_back(loop);
     map.loops.back().closed_at = map.number;
     map.loops.back().num_landmarks_then = map.landmarks.size();
@@ -172,10 +174,10 @@ MapVersion apply(MapVersion map, const Edit& edit) {
                   "landmarks are added in the order of their ids");
     map.landmarks.push_back(landmark);
   }
-  for (const auto& sighting : edit.sightings) see_again(map, sighting);
-  believe(map, edit);
+  for (const auto& sighting : edit.sightings) add_observation(map, sighting);
+  add_loops(map, edit);
   move(map, edit);
-  for (const auto& removed : edit.removed_observations) forget(map, removed);
+  for (const auto& removed : edit.removed_observations) remove_observation(map, removed);
   for (const auto& made : edit.merges) merge(map, made);
   for (const auto& id : edit.culled_landmarks) cull(map, id);
   for (const auto& id : edit.culled_keyframes) cull(map, id);

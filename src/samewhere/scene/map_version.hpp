@@ -24,24 +24,25 @@ struct Observation {
       {};  // the loop for which it was made; invalid: tracking or mapping alone
 };
 
-// A point of the world. Where it is hangs on a keyframe that sees it, or saw it and is live.
+// A 3D point with its descriptor. Its position is relative to the anchor, a keyframe that observes
+// it, or observed it and is live.
 struct Landmark {
   core::LandmarkId id;
   core::KeyframeId anchor;
   Eigen::Vector3d position_in_anchor = Eigen::Vector3d::Zero();  // body frame of the anchor, metres
   Eigen::Vector3d normal_in_anchor =
-      Eigen::Vector3d::UnitZ();  // unit vector from the point to who saw it last
-  double range_m = 0.0;          // distance from which it was described
+      Eigen::Vector3d::UnitZ();  // unit vector from the point to the last camera that observed it
+  double range_m = 0.0;          // distance at which its descriptor was computed
   int octave = 0;                // pyramid level at that distance
   double weight = 0.0;           // sum of the inverse variances of its depths
   OrbDescriptor descriptor{};    // as seen last
   std::array<std::uint8_t, 3> rgb{};
   std::pmr::vector<Observation> observations;  // one per keyframe at most
   core::LandmarkId merged_into;                // valid: the same point as that one, see Merge
-  bool is_culled = false;                      // found to be no good; only its id lives on
+  bool is_culled = false;                      // removed; only its id remains
 };
 
-// Whether the landmark is part of the map today.
+// Whether the landmark is part of the map.
 inline bool is_live(const Landmark& landmark) {
   return !landmark.is_culled && !landmark.merged_into.is_valid();
 }
@@ -59,17 +60,17 @@ struct Keyframe {
   std::optional<OdometryEdge> odometry;  // none: the first of its session
   features::View view;                   // immutable picture of the past
   std::vector<core::LandmarkId> slots;   // one per feature; invalid = shows no landmark
-  // Where a bundle that saw both found it relative to its odometry parent: better than odometry,
-  // and as free of loops.
+  // Pose relative to its odometry parent by a local bundle adjustment of both: more accurate than
+  // odometry, and as independent of loops.
   std::optional<core::Rigid3> refined_parent_from_keyframe;
   std::uint64_t refined_at = 0;  // MapVersion::number then
-  // The same by a full bundle: that rests on the loops of its time.
+  // The same by full bundle adjustment, which depends on the loops of its time.
   std::optional<core::Rigid3> settled_parent_from_keyframe;
   std::uint64_t settled_at = 0;  // MapVersion::number then
-  // Set: culled. It shows no landmark any more; its pose hangs on its odometry parent.
+  // Set: culled. It observes no landmark; its pose is relative to its odometry parent.
   std::optional<core::Rigid3> culled_parent_from_keyframe;
-  // By what lengths around it were stretched since it and its parent were measured to be of one
-  // scale, as a logarithm: see rescale.hpp.
+  // Logarithm of the scale correction of lengths around it since its odometry was measured: see
+  // rescale.hpp.
   double log_scale = 0.0;
 };
 
@@ -87,7 +88,7 @@ struct LoopEdge {
   std::uint64_t num_landmarks_then = 0;  // landmarks of the map then, all; set by apply()
 };
 
-// How many keyframes or landmarks are part of the map today.
+// Number of keyframes or landmarks that are part of the map.
 template <class Row>
 std::size_t num_live(const ChunkedVector<Row>& rows) {
   std::size_t count = 0;
@@ -95,8 +96,8 @@ std::size_t num_live(const ChunkedVector<Row>& rows) {
   return count;
 }
 
-// Two landmarks are one point. `from` keeps its row and its list of observations, so that the merge
-// can be taken back by its cause; the map shows `to` in their place.
+// Two landmarks are one point. `from` keeps its row and its observations, so that the merge can be
+// undone by its cause; the map shows `to` in place of both.
 struct Merge {
   core::LandmarkId from;
   core::LandmarkId to;
@@ -110,42 +111,42 @@ struct MapVersion {
   ChunkedVector<Keyframe> keyframes;
   ChunkedVector<Landmark> landmarks;
   std::vector<LoopEdge> loops;
-  // Accepted, but bent beyond belief when the poses were solved. They hold nothing; later loops may
-  // speak for them. Their keyframes may be culled.
-  std::vector<LoopEdge> doubted_loops;
-  ChunkedVector<Merge> merges;  // in the order they were made, without those taken back
+  // Accepted by the loop verifier and rejected by the robust pose graph. Not part of the graph;
+  // re-tested whenever a loop is added. Their keyframes may be culled.
+  std::vector<LoopEdge> suspended_loops;
+  ChunkedVector<Merge> merges;  // in the order they were made, without undone ones
 
   const Keyframe& at(core::KeyframeId id) const { return keyframes[id.index()]; }
   const Landmark& at(core::LandmarkId id) const { return landmarks[id.index()]; }
 };
 
-// A known landmark was seen again.
+// A new observation of a known landmark.
 struct Sighting {
   core::LandmarkId landmark;
   Observation observation;
 };
 
-// The world moved under a keyframe: world_from_body becomes new_from_old * world_from_body, and all
-// that was measured from there becomes `scale` times as long.
+// Correction of a keyframe's pose: world_from_body becomes new_from_old * world_from_body, and
+// lengths measured from there are multiplied by `scale`.
 struct PoseChange {
   core::KeyframeId keyframe;
   core::Rigid3 new_from_old;
   double scale = 1.0;
 };
 
-// A bundle found where the keyframe is relative to its odometry parent.
+// Pose of a keyframe relative to its odometry parent by bundle adjustment.
 struct Refinement {
   core::KeyframeId keyframe;
   core::Rigid3 parent_from_keyframe;
 };
 
-// The landmark is there instead.
+// New position of a landmark.
 struct LandmarkChange {
   core::LandmarkId landmark;
   Eigen::Vector3d position_in_anchor = Eigen::Vector3d::Zero();
 };
 
-// A sighting was a mistake: the feature shows no landmark any more.
+// An outlier observation: the feature shows no landmark any more.
 struct RemovedObservation {
   core::LandmarkId landmark;
   core::KeyframeId keyframe;
@@ -154,27 +155,27 @@ struct RemovedObservation {
 // A change of the map, as a value: what is added, what moves and what goes. Applied in the order of
 // the fields.
 struct Edit {
-  std::vector<core::CandidateId> withdrawn_loops;    // taken back with all that they caused
-  std::vector<core::LandmarkId> unmerged_landmarks;  // no longer one with what they went into
+  std::vector<core::CandidateId> withdrawn_loops;    // removed with all that they caused
+  std::vector<core::LandmarkId> unmerged_landmarks;  // their merges are undone
   std::vector<Keyframe> keyframes;
   std::vector<Landmark> landmarks;
   std::vector<Sighting> sightings;
   std::vector<PoseChange> pose_changes;
   std::vector<Refinement> refinements;
-  std::vector<Refinement> settled;  // by a full bundle: resting on loops
+  std::vector<Refinement> settled;  // by full bundle adjustment: dependent on loops
   std::vector<LandmarkChange> landmark_changes;
   std::vector<RemovedObservation> removed_observations;
   std::vector<Merge> merges;
   std::vector<core::LandmarkId> culled_landmarks;
   std::vector<core::KeyframeId> culled_keyframes;
-  std::vector<LoopEdge> doubted_loops;
-  std::vector<LoopEdge> loops;  // doubted before: no longer
+  std::vector<LoopEdge> suspended_loops;
+  std::vector<LoopEdge> loops;  // accepted; if suspended before, no longer
 };
 
 // The version after the edit. Ids are positions and stay: what is merged or culled is marked, not
-// removed; what a loop caused is withdrawn as withdraw.hpp says. Throws ContractError if ids do not
-// continue the map's or name what is not there, for a culled keyframe without odometry (nothing
-// would hold it) and for one that a loop edge holds.
+// removed; withdraw.hpp has the effects of withdrawn loops. Throws ContractError if ids do not
+// continue the map's or are not in the map, for a culled keyframe without odometry parent and for
+// one with a loop edge.
 MapVersion apply(MapVersion map, const Edit& edit);
 
 // Weight of a depth in a landmark's mean: the variance of a triangulated depth grows with its
@@ -183,11 +184,10 @@ double weight_of_depth(double depth_m);
 
 Eigen::Vector3d position_in_world(const MapVersion& map, const Landmark& landmark);
 
-// Where a keyframe is relative to its odometry parent, as well as is known without loops: by
-// bundles if they saw both, else by odometry. ContractError without a parent.
+// Pose of a keyframe relative to its odometry parent, independent of loops: by local bundle
+// adjustment if there was one, else by odometry. ContractError without a parent.
 core::Rigid3 parent_from_keyframe(const Keyframe& keyframe);
-// The same as well as is known with loops: by a full bundle, unless something is known that is
-// younger.
+// The same with loops: by full bundle adjustment, unless a local one is younger.
 core::Rigid3 settled_parent_from_keyframe(const Keyframe& keyframe);
 
 // Pose of a keyframe, culled or not.
@@ -196,16 +196,17 @@ core::Rigid3 world_from_body(const MapVersion& map, core::KeyframeId id);
 // The keyframe, live or not, that the frame became; nullptr: it is none.
 const Keyframe* keyframe_of(const MapVersion& map, core::FrameId frame);
 
-// Pose of a frame relative to its reference keyframe, in the map's lengths of today.
+// Pose of a frame relative to its reference keyframe, in the map's current scale.
 core::Rigid3 reference_from_frame(const MapVersion& map, const core::FramePose& pose);
 // In the world, if the pose was measured.
 core::Rigid3 world_from_frame(const MapVersion& map, const core::FramePose& pose);
 
-// Whether lengths come from motion, so that their scale creeps: the first keyframe has no depth of
-// its own.
+// Whether lengths come from motion and have scale drift: the first keyframe has no depth
+// measurements.
 bool is_without_depth(const MapVersion& map);
 
-// Where a keyframe hangs: itself, or the first of its odometry ancestors that is not culled.
+// The keyframe that holds a pose: itself, or the first of its odometry ancestors that is not
+// culled.
 struct Holder {
   core::KeyframeId keyframe;
   core::Rigid3 holder_from_keyframe;
@@ -216,11 +217,11 @@ Holder holder_of(const MapVersion& map, core::KeyframeId id);
 // The landmark that is shown in place of this one: itself unless it was merged. It may be culled.
 const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id);
 
-// Whether the shortest way between two live keyframes, in edges of odometry and of loops, takes a
-// loop: what places one relative to the other rests on that loop, and must not count as odometry.
-bool are_joined_by_loop(const MapVersion& map, core::KeyframeId a, core::KeyframeId b);
+// Whether the shortest path between two live keyframes, in number of odometry and loop edges, uses
+// a loop: their relative pose depends on that loop then, and is not odometry.
+bool shortest_path_uses_loop(const MapVersion& map, core::KeyframeId a, core::KeyframeId b);
 
-// A keyframe and how many landmarks it shares with another.
+// A keyframe and the number of landmarks it shares with another.
 struct Covisible {
   core::KeyframeId keyframe;
   int num_shared = 0;
@@ -229,8 +230,8 @@ struct Covisible {
 // The keyframes that share landmarks with this one, most first; ties go to the younger.
 std::vector<Covisible> covisible_keyframes(const MapVersion& map, core::KeyframeId id);
 
-// Pose of every keyframe, culled ones too, by odometry alone, as if no loop had ever been closed:
-// the edges composed from the first on.
+// Pose of every keyframe, culled ones too, by odometry alone, independent of loops: the edges
+// composed from the first keyframe on.
 std::vector<core::Rigid3> odometry_poses(const MapVersion& map);
 
 }  // namespace samewhere::scene

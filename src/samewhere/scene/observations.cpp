@@ -14,7 +14,7 @@ core::LandmarkId shown_at(const MapVersion& map, const Observation& observation)
   return map.at(observation.keyframe).slots[static_cast<std::size_t>(observation.slot)];
 }
 
-void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& observation) {
+void set_appearance(const MapVersion& map, Landmark& landmark, const Observation& observation) {
   const Keyframe& keyframe = map.at(observation.keyframe);
   const features::Features& features = *keyframe.view.features;
   const core::Rigid3 anchor_from_body =
@@ -29,15 +29,15 @@ void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& 
               landmark.descriptor.size());
 }
 
-void hang_on_observer(const MapVersion& map, Landmark& landmark) {
+void anchor_to_observer(const MapVersion& map, Landmark& landmark) {
   const auto& seen = landmark.observations;
   const bool is_held = std::any_of(seen.begin(), seen.end(), [&](const Observation& o) {
     return o.keyframe == landmark.anchor;
   });
-  if (!is_held && !seen.empty()) hang_on(map, landmark, seen.front().keyframe);
+  if (!is_held && !seen.empty()) anchor_to(map, landmark, seen.front().keyframe);
 }
 
-void hang_on(const MapVersion& map, Landmark& landmark, core::KeyframeId keyframe) {
+void anchor_to(const MapVersion& map, Landmark& landmark, core::KeyframeId keyframe) {
   const core::Rigid3 keyframe_from_anchor =
       inverse(world_from_body(map, keyframe)) * world_from_body(map, landmark.anchor);
   landmark.anchor = keyframe;

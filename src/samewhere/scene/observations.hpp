@@ -1,27 +1,24 @@
 #pragma once
 
-// For the files of this folder: how slots of keyframes and observations of landmarks are kept
-// equal.
+// For the files of this folder: keeps slots of keyframes and observations of landmarks consistent.
 
 #include <samewhere/scene/map_version.hpp>
 
 namespace samewhere::scene {
 
-// The keyframe's feature shows this landmark from now on, or none if it is invalid.
+// Assigns the landmark to the keyframe's feature; an invalid one: none.
 void set_slot(MapVersion& map, const Observation& observation, core::LandmarkId landmark);
 
 core::LandmarkId shown_at(const MapVersion& map, const Observation& observation);
 
-// How the keyframe sees the landmark becomes how it looks: descriptor, pyramid level, range and
-// direction.
-void look_as_seen(const MapVersion& map, Landmark& landmark, const Observation& observation);
+// Sets descriptor, pyramid level, range and normal of the landmark from this observation.
+void set_appearance(const MapVersion& map, Landmark& landmark, const Observation& observation);
 
-// A landmark that its anchor sees no longer hangs from now on on a keyframe that does, in its place
-// in the world: it moves with those who see it. To be called when a keyframe or a loop takes
-// observations along, and before poses move; not for what a bundle finds wrong: the keyframe that
-// brought it still answers for it.
-void hang_on_observer(const MapVersion& map, Landmark& landmark);
-// The same on this keyframe.
-void hang_on(const MapVersion& map, Landmark& landmark, core::KeyframeId keyframe);
+// If the anchor of a landmark no longer observes it, anchors it to a keyframe that does; its
+// position in the world stays. To be called when a culled keyframe or a withdrawn loop removes
+// observations, and before poses move; not for outliers of bundle adjustment.
+void anchor_to_observer(const MapVersion& map, Landmark& landmark);
+// Anchors the landmark to this keyframe; its position in the world stays.
+void anchor_to(const MapVersion& map, Landmark& landmark, core::KeyframeId keyframe);
 
 }  // namespace samewhere::scene

@@ -7,26 +7,26 @@
 namespace samewhere::scene {
 namespace {
 
-void stretch(core::Rigid3& a_from_b, core::Matrix6d& information, double factor) {
+void scale(core::Rigid3& a_from_b, core::Matrix6d& information, double factor) {
   a_from_b.translation *= factor;
   information.topRows<3>() /= factor;
   information.leftCols<3>() /= factor;
 }
 
-void stretch(Keyframe& keyframe, double own, double of_parent) {
+void scale(Keyframe& keyframe, double own, double of_parent) {
   keyframe.log_scale += std::log(own);
   if (!keyframe.odometry) return;
-  stretch(keyframe.odometry->parent_from_keyframe, keyframe.odometry->information, of_parent);
+  scale(keyframe.odometry->parent_from_keyframe, keyframe.odometry->information, of_parent);
   for (auto* parent_from_keyframe :
        {&keyframe.refined_parent_from_keyframe, &keyframe.settled_parent_from_keyframe,
         &keyframe.culled_parent_from_keyframe})
     if (*parent_from_keyframe) (*parent_from_keyframe)->translation *= of_parent;
 }
 
-void stretch(std::vector<LoopEdge>& loops, const std::vector<double>& factors) {
+void scale(std::vector<LoopEdge>& loops, const std::vector<double>& factors) {
   for (LoopEdge& loop : loops) {
     const double at_match = factors[loop.match.index()];
-    stretch(loop.match_from_query, loop.information, at_match);
+    scale(loop.match_from_query, loop.information, at_match);
     loop.log_scale += std::log(at_match / factors[loop.query.index()]);
   }
 }
@@ -39,9 +39,8 @@ void rescale(MapVersion& map, std::vector<double> factors) {
     const Keyframe& keyframe = map.keyframes[i];
     const double of_parent = keyframe.odometry ? factors[keyframe.odometry->parent.index()] : 1.0;
     if (!is_live(keyframe)) factors[i] = of_parent;
-    core::require(factors[i] > 0.0, "what is stretched keeps its direction");
-    if (factors[i] != 1.0 || of_parent != 1.0)
-      stretch(map.keyframes.edit(i), factors[i], of_parent);
+    core::require(factors[i] > 0.0, "a scale factor is positive");
+    if (factors[i] != 1.0 || of_parent != 1.0) scale(map.keyframes.edit(i), factors[i], of_parent);
   }
   for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
     const double factor = factors[map.landmarks[i].anchor.index()];
@@ -50,8 +49,8 @@ void rescale(MapVersion& map, std::vector<double> factors) {
     landmark.position_in_anchor *= factor;
     landmark.range_m *= factor;
   }
-  stretch(map.loops, factors);
-  stretch(map.doubted_loops, factors);
+  scale(map.loops, factors);
+  scale(map.suspended_loops, factors);
 }
 
 }  // namespace samewhere::scene

@@ -6,12 +6,11 @@
 
 namespace samewhere::scene {
 
-// A camera without depth does not know how long anything is: its scale creeps from keyframe to
-// keyframe, until a loop shows by how much. `factors`: one per keyframe, those of culled ones are
-// not looked at (they go with what they hang on). What was measured from keyframe i becomes
-// factors[i] times as long: points anchored there, edges of odometry and loops that begin there,
-// keyframes that hang there. Its log_scale keeps count, so that it stays known that odometry, when
-// it was measured, saw keyframe and parent in one scale. Poses stay.
+// Corrects scale drift of a camera without depth, which a loop measures. `factors`: one per
+// keyframe; those of culled ones are not used (the factor of their holder is). Lengths measured
+// from keyframe i are multiplied by factors[i]: points anchored there, odometry and loop edges that
+// begin there, culled keyframes held there. Keyframe::log_scale accumulates the factors, because an
+// odometry edge was measured in one scale for keyframe and parent. Poses stay.
 void rescale(MapVersion& map, std::vector<double> factors);
 
 }  // namespace samewhere::scene

@@ -75,7 +75,7 @@ class RowFile {
   std::string name_of(const char* table, std::int64_t number) const;
 
   std::shared_ptr<const void> copy_;  // that is read instead; removed with the last owner
-  std::unique_ptr<WriterLock> lock_;  // of who may write; released after the connection
+  std::unique_ptr<WriterLock> lock_;  // of the writer; released after the connection
   std::unique_ptr<Database> database_;
   bool has_log_ = false;
   std::map<std::string, Statement> statements_;  // by their text; gone before the database

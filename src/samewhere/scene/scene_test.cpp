@@ -142,7 +142,7 @@ TEST_F(TwoKeyframes, AMergedLandmarkKeepsItsRowAndTheOtherShowsInItsPlace) {
   EXPECT_THROW(apply(merged, one), core::ContractError) << "merged once";
 }
 
-TEST_F(TwoKeyframes, ACulledLandmarkAndOneThatNobodySeesAreNotShown) {
+TEST_F(TwoKeyframes, CulledLandmarksAndThoseWithoutObservationsAreNotShown) {
   Edit seen;
   seen.landmarks = {landmark(1, 0, {0.0, 0.0, 2.0})};
   seen.sightings = {{core::LandmarkId(0), {core::KeyframeId(1), 0}},
@@ -181,7 +181,7 @@ TEST_F(TwoKeyframes, ACulledKeyframeHangsOnItsParentAndHandsItsOdometryOn) {
     return world_from_body(culled, core::KeyframeId(i)).translation;
   };
   EXPECT_LT((pose_of(1) - Eigen::Vector3d(0.5, 0.0, 0.0)).norm(), 1e-12);
-  EXPECT_FALSE(is_live(culled.landmarks[0])) << "nobody else saw it";
+  EXPECT_FALSE(is_live(culled.landmarks[0])) << "it had no other observation";
   const OdometryEdge& edge = *culled.keyframes[2].odometry;
   EXPECT_EQ(edge.parent, core::KeyframeId(0));
   EXPECT_LT((edge.parent_from_keyframe.translation - Eigen::Vector3d(0.5, 0.0, 0.3)).norm(), 1e-12);
@@ -229,10 +229,10 @@ TEST_F(TwoKeyframes, WhatAnotherStillSeesHangsOnItWhenItsAnchorIsCulled) {
   move.pose_changes = {{core::KeyframeId(2), aside}};
   const MapVersion moved = apply(culled, move);
   EXPECT_LT((position_in_world(moved, moved.landmarks[1]) - aside * before).norm(), 1e-12)
-      << "with who sees it, not with the parent of who saw it";
+      << "with its observer, not with the parent of the culled one";
 }
 
-TEST_F(TwoKeyframes, WhoWasCulledWhileALoopBentTheMapStandsStraightWhenItIsTakenBack) {
+TEST_F(TwoKeyframes, AKeyframeCulledWhileAFalseLoopWasInTheMapReturnsToOdometryAfterWithdrawal) {
   const core::CandidateId cause(5);
   Edit close;
   close.loops = {{core::KeyframeId(2), core::KeyframeId(0), {}}};

@@ -31,7 +31,7 @@ std::string printable(std::string_view message) {
   return text;
 }
 
-// What the code means to whoever reads the message.
+// Meaning of the code for the user.
 std::string meaning_of(int code, const char* message) {
   switch (code & 0xff) {
     case SQLITE_IOERR:

@@ -131,15 +131,15 @@ class RandomEdits {
     const core::KeyframeId match = any_keyframe(map);
     if (query == match || !is_live(map.at(query)) || !is_live(map.at(match))) return;
     const core::CandidateId cause(map.number);
-    auto& loops = random_.index(3) == 0 ? edit.doubted_loops : edit.loops;
+    auto& loops = random_.index(3) == 0 ? edit.suspended_loops : edit.loops;
     loops.push_back({query, match, random_pose(random_), random_information(random_), cause});
     causes_.push_back(cause);
   }
 
-  // The last loop, with all that it caused; it is doubted from now on.
+  // The last loop, with all that it caused; it is suspended.
   static void withdraw_loop(const MapVersion& map, Edit& edit) {
     edit.withdrawn_loops = {map.loops.back().cause};
-    edit.doubted_loops = {map.loops.back()};
+    edit.suspended_loops = {map.loops.back()};
   }
 
   // One of the loops, or none.

@@ -87,9 +87,9 @@ inline void expect_same(const MapVersion& a, const MapVersion& b) {
     EXPECT_TRUE(is_same(a.landmarks[i], b.landmarks[i])) << "landmark " << i;
   for (std::size_t i = 0; i < a.loops.size(); ++i)
     EXPECT_TRUE(is_same(a.loops[i], b.loops[i])) << "loop " << i;
-  ASSERT_EQ(a.doubted_loops.size(), b.doubted_loops.size());
-  for (std::size_t i = 0; i < a.doubted_loops.size(); ++i)
-    EXPECT_TRUE(is_same(a.doubted_loops[i], b.doubted_loops[i])) << "doubted loop " << i;
+  ASSERT_EQ(a.suspended_loops.size(), b.suspended_loops.size());
+  for (std::size_t i = 0; i < a.suspended_loops.size(); ++i)
+    EXPECT_TRUE(is_same(a.suspended_loops[i], b.suspended_loops[i])) << "suspended loop " << i;
 }
 
 inline void expect_same(const MapExtras& a, const MapExtras& b) {

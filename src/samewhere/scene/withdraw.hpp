@@ -6,24 +6,23 @@
 
 namespace samewhere::scene {
 
-// Takes loops back with all that was done to landmarks for them, and merges of single landmarks (by
-// what was merged, not by what it went into).
+// Withdraws loops (by their causes) with all changes of landmarks that they caused, and undoes the
+// merges of single landmarks (`unmerged` are the landmarks that were merged, not their survivors).
 //
-// - The loop edges of these causes go, doubted ones too, and the observations that bear them.
-// - Merges of these causes are taken back, and so is every later merge, whatever its cause, of a
-//   landmark that one of them had a part in: it may have been made for the sake of the wrong part.
-//   So the landmarks that these merges touched are one exactly where they were before.
-// - So are merges that mapping alone made since, of wholes that both hold landmarks from before the
-//   loop, with every later merge of what they touched: poses that the loop had bent, and places
-//   that it had laid onto each other, may have made them. What is the same point all the same is
-//   merged again when it is seen. Merges for the sake of other loops stay, and those of younger
-//   landmarks with older ones. So but for other loops the partition of the landmarks from before is
-//   the one from before, exactly.
-// - Who comes back shows again wherever it showed when it was merged, but in keyframes that were
-//   culled since. What it had gone into, if culled since, comes back with what is still free.
-// - Keyframes older than the loop that a bundle refined since, and culled ones, are where odometry
-//   (or a bundle before the loop) measured them, relative to their parents: the loop had bent what
-//   held that bundle. What a full bundle settled since is forgotten of all keyframes.
+// - Loop edges of these causes are removed, suspended ones too, and observations with these causes.
+// - Merges of these causes are undone, and every later merge, of any cause, of a landmark that took
+//   part in one of them, since it may rest on the false merge.
+// - Merges without a cause (made by mapping) since the loop are undone if both landmarks contain
+//   ones from before the loop, with every later merge of these landmarks: the false loop closure
+//   may have laid two places on each other. Landmarks that are one point are merged again when they
+//   are observed. Merges caused by other loops stay, and those of younger landmarks with older
+//   ones. Thus, except for other loops, the partition of the landmarks from before the loop is
+//   restored exactly.
+// - A restored landmark is assigned to all its observations from before the merge, except in
+//   keyframes culled since. Its survivor, if culled since, is restored with its free features.
+// - Of keyframes older than the loop, results of bundle adjustment since the loop are dropped, and
+//   culled ones return to odometry (or an earlier bundle adjustment) relative to their parents. Of
+//   all keyframes, results of full bundle adjustment since the loop are dropped.
 //
 // Poses of live keyframes and positions in the world stay. Throws ContractError for a cause of no
 // loop edge of the map and for a landmark that is not merged.

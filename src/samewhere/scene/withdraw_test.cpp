@@ -8,24 +8,25 @@
 namespace samewhere::scene {
 namespace {
 
-const core::CandidateId kLie(1000);
-const core::CandidateId kTruth(1001);
+const core::CandidateId kFalse(1000);
+const core::CandidateId kTrue(1001);
 
-class Withdrawing : public MapFiles {
+class Withdraw : public MapFiles {
  protected:
-  // A map of random edits, and a wrong loop about to join its first keyframe and its last.
+  // A map of random edits, and a false loop closure between its first keyframe and its last, not
+  // added yet.
   void begin(std::uint64_t seed) {
     random_ = core::Random(seed);
     map_ = {};
     RandomEdits edits(seed);
     for (int i = 0; i < 6; ++i) map_ = apply(std::move(map_), edits.next(map_));
     for (int i = 0; i < 3; ++i) add_rich_keyframe(seed);
-    lie_ = {map_.keyframes.back().id, core::KeyframeId(0), random_pose(random_),
-            random_information(random_), kLie};
+    false_loop_ = {map_.keyframes.back().id, core::KeyframeId(0), random_pose(random_),
+                   random_information(random_), kFalse};
     num_before_ = map_.landmarks.size();
   }
 
-  // Every second feature shows a landmark of its own.
+  // Every second feature shows a new landmark.
   void add_rich_keyframe(std::uint64_t seed) {
     Edit edit;
     Keyframe keyframe;
@@ -63,9 +64,9 @@ class Withdrawing : public MapFiles {
     return ids;
   }
 
-  void believe_lie() {
+  void add_false_loop() {
     Edit edge;
-    edge.loops = {lie_};
+    edge.loops = {false_loop_};
     map_ = apply(std::move(map_), edge);
   }
 
@@ -77,8 +78,8 @@ class Withdrawing : public MapFiles {
     return true;
   }
 
-  // A landmark seen in a free slot of a keyframe that did not know.
-  void see(core::LandmarkId id, core::CandidateId cause) {
+  // A new observation of a landmark by a free feature of any keyframe.
+  void observe(core::LandmarkId id, core::CandidateId cause) {
     const Keyframe& keyframe = map_.keyframes[random_.index(map_.keyframes.size())];
     if (keyframe.slots.empty()) return;
     const auto slot = random_.index(keyframe.slots.size());
@@ -92,56 +93,57 @@ class Withdrawing : public MapFiles {
     map_ = apply(std::move(map_), edit);
   }
 
-  // The wrong loop merges and sees; mapping merges on, always with a part that the loop merged.
-  void lie_and_follow() {
-    believe_lie();
+  // Merges and observations caused by the false loop; later merges of landmarks that took part.
+  void add_false_loop_and_merges() {
+    add_false_loop();
     for (int i = 0; i < 15; ++i) {
       const core::LandmarkId one = any_live();
       const core::LandmarkId other = any_live();
-      const bool is_merged = merge(one, other, kLie);
+      const bool is_merged = merge(one, other, kFalse);
       if (is_merged && random_.index(2) == 0) merge(other, any_live(), {});
-      if (is_merged && random_.index(2) == 0) merge(any_live(), survivor_of(map_, one).id, kTruth);
-      see(any_live(), kLie);
+      if (is_merged && random_.index(2) == 0) merge(any_live(), survivor_of(map_, one).id, kTrue);
+      observe(any_live(), kFalse);
     }
   }
 
-  MapVersion without_lie() const {
+  MapVersion without_false_loop() const {
     Edit edit;
-    edit.withdrawn_loops = {kLie};
+    edit.withdrawn_loops = {kFalse};
     return apply(map_, edit);
   }
 
   core::Random random_{0};
   MapVersion map_;
-  LoopEdge lie_;
+  LoopEdge false_loop_;
   std::size_t num_before_ = 0;
 };
 
-TEST_F(Withdrawing, ALoopTakesAllThatItCausedWithIt) {
+TEST_F(Withdraw, RestoresThePartitionOfLandmarks) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     begin(seed);
     const MapVersion before = map_;
-    lie_and_follow();
+    add_false_loop_and_merges();
     ASSERT_GT(map_.merges.size(), before.merges.size() + 10);
-    const MapVersion after = without_lie();
+    const MapVersion after = without_false_loop();
     EXPECT_TRUE(partition_of(after) == partition_of(before));
     EXPECT_EQ(after.loops.size(), before.loops.size());
     ASSERT_EQ(after.merges.size(), before.merges.size());
     for (std::size_t i = 0; i < before.merges.size(); ++i)
       EXPECT_TRUE(is_same(after.merges[i], before.merges[i]));
-    EXPECT_FALSE(partition_of(map_) == partition_of(before)) << "it changed nothing";
+    EXPECT_FALSE(partition_of(map_) == partition_of(before)) << "the loop changed nothing";
   }
 }
 
-TEST_F(Withdrawing, WhatWasCulledOrCameMeanwhileDoesNotChangeWhichLandmarksAreOne) {
+TEST_F(Withdraw, RestoresThePartitionDespiteLaterCullingAndKeyframes) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     begin(seed);
     const auto before = survivors(map_, num_before_);
-    lie_and_follow();
+    add_false_loop_and_merges();
     RandomEdits edits(seed + 100);
-    Edit later = edits.next(map_);  // a keyframe with sightings, culls, outliers of bundles
+    Edit later =
+        edits.next(map_);  // a keyframe with observations, culling, outliers of bundle adjustment
     later.merges.clear();
     map_ = apply(std::move(map_), later);
     Edit cull;
@@ -154,63 +156,63 @@ TEST_F(Withdrawing, WhatWasCulledOrCameMeanwhileDoesNotChangeWhichLandmarksAreOn
       if (is_live(map_.at(id)) && !is_held) cull.culled_keyframes = {id};
     }
     map_ = apply(std::move(map_), cull);
-    const MapVersion after = without_lie();
+    const MapVersion after = without_false_loop();
     EXPECT_EQ(survivors(after, num_before_), before);
     expect_slots_and_observations_agree(after);
   }
 }
 
-TEST_F(Withdrawing, MergesThatHaveNothingToDoWithItStay) {
+TEST_F(Withdraw, KeepsIndependentMerges) {
   begin(3);
   const std::vector<core::LandmarkId> ids = different_live(7);
   ASSERT_TRUE(merge(ids[0], ids[1], {}));
-  believe_lie();
-  ASSERT_TRUE(merge(ids[2], ids[3], kLie));
-  ASSERT_TRUE(merge(ids[4], ids[5], kTruth));
+  add_false_loop();
+  ASSERT_TRUE(merge(ids[2], ids[3], kFalse));
+  ASSERT_TRUE(merge(ids[4], ids[5], kTrue));
   const core::LandmarkId younger(map_.landmarks.size());
   add_rich_keyframe(3);
   ASSERT_TRUE(merge(younger, ids[6], {}));
-  const MapVersion after = without_lie();
+  const MapVersion after = without_false_loop();
   EXPECT_EQ(after.merges.size(), map_.merges.size() - 1);
-  EXPECT_EQ(after.at(ids[0]).merged_into, ids[1]) << "mapping merged before it";
-  EXPECT_EQ(after.at(ids[4]).merged_into, ids[5]) << "for the sake of another loop";
-  EXPECT_EQ(after.at(younger).merged_into, ids[6]) << "nobody knew it before the loop";
+  EXPECT_EQ(after.at(ids[0]).merged_into, ids[1]) << "merged before the loop";
+  EXPECT_EQ(after.at(ids[4]).merged_into, ids[5]) << "caused by another loop";
+  EXPECT_EQ(after.at(younger).merged_into, ids[6]) << "created after the loop";
   EXPECT_TRUE(is_live(after.at(ids[2])));
 }
 
-TEST_F(Withdrawing, WhatMappingMergedWhileItWasThereLeavesThePartitionOfBefore) {
+TEST_F(Withdraw, UndoesMergesOfMappingSinceTheLoop) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     begin(seed);
     for (int i = 0; i < 5; ++i) merge(any_live(), any_live(), {});
     const auto before = classes(map_, num_before_);
-    believe_lie();
+    add_false_loop();
     add_rich_keyframe(seed);
     num_before_ = map_.landmarks.size();  // to choose from: younger ones, too
     for (int i = 0; i < 60; ++i) merge(any_live(), any_live(), {});
-    EXPECT_NE(classes(map_, before.size()), before) << "it changed nothing";
-    const MapVersion after = without_lie();
+    EXPECT_NE(classes(map_, before.size()), before) << "the loop changed nothing";
+    const MapVersion after = without_false_loop();
     EXPECT_EQ(classes(after, before.size()), before);
     EXPECT_LT(after.merges.size(), map_.merges.size());
     expect_slots_and_observations_agree(after);
   }
 }
 
-TEST_F(Withdrawing, TwoOldLandmarksAreNoLongerOneThroughAYoungerOne) {
+TEST_F(Withdraw, SeparatesOldLandmarksMergedThroughAYoungerOne) {
   begin(9);
   const std::vector<core::LandmarkId> ids = different_live(2);
   const auto before = classes(map_, num_before_);
-  believe_lie();
+  add_false_loop();
   const core::LandmarkId younger(map_.landmarks.size());
   add_rich_keyframe(9);
   ASSERT_TRUE(merge(ids[0], younger, {}));
   ASSERT_TRUE(merge(younger, ids[1], {}));
-  const MapVersion after = without_lie();
+  const MapVersion after = without_false_loop();
   EXPECT_EQ(classes(after, num_before_), before);
-  EXPECT_EQ(after.at(ids[0]).merged_into, younger) << "one of the two keeps it";
+  EXPECT_EQ(after.at(ids[0]).merged_into, younger) << "one of the two merges stays";
 }
 
-TEST_F(Withdrawing, AMergedLandmarkComesBackAloneWithItsLaterMerges) {
+TEST_F(Withdraw, UnmergingALandmarkUndoesItsLaterMergesAlone) {
   begin(4);
   const MapVersion before = map_;
   const core::LandmarkId a = any_live();
@@ -228,18 +230,18 @@ TEST_F(Withdrawing, AMergedLandmarkComesBackAloneWithItsLaterMerges) {
   EXPECT_TRUE(partition_of(apply(map_, unmerge)) == partition_of(before)) << "later ones go";
 }
 
-TEST_F(Withdrawing, WhatIsMergedStaysInItsPlaceThoughItsAnchorWasCulledBentByTheLoop) {
+TEST_F(Withdraw, KeepsThePositionOfAMergedLandmarkWhoseAnchorWasCulled) {
   begin(6);
   const core::KeyframeId anchor(map_.keyframes.size() - 2);
   const core::LandmarkId merged = map_.at(anchor).slots[0];
   Edit seen;
-  seen.sightings = {{merged, {lie_.query, 1}}};
+  seen.sightings = {{merged, {false_loop_.query, 1}}};
   map_ = apply(std::move(map_), seen);
   core::LandmarkId other = any_live();
   while (other == merged) other = any_live();
   ASSERT_TRUE(merge(merged, other, {}));
   Edit edge;
-  edge.loops = {lie_};
+  edge.loops = {false_loop_};
   edge.pose_changes = {{anchor, random_pose(random_)}};
   map_ = apply(std::move(map_), edge);
   Edit cull;
@@ -247,7 +249,7 @@ TEST_F(Withdrawing, WhatIsMergedStaysInItsPlaceThoughItsAnchorWasCulledBentByThe
   map_ = apply(std::move(map_), cull);
   const Eigen::Vector3d before = position_in_world(map_, map_.at(merged));
 
-  MapVersion after = without_lie();
+  MapVersion after = without_false_loop();
   Edit unmerge;
   unmerge.unmerged_landmarks = {merged};
   after = apply(std::move(after), unmerge);
@@ -255,13 +257,13 @@ TEST_F(Withdrawing, WhatIsMergedStaysInItsPlaceThoughItsAnchorWasCulledBentByThe
   EXPECT_LT((position_in_world(after, after.at(merged)) - before).norm(), 1e-9);
 }
 
-TEST_F(Withdrawing, ItCanBeDoneAfterTheWayThroughAFile) {
+TEST_F(Withdraw, WorksOnAStoredMap) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     begin(seed);
     const Partition before = partition_of(map_);
     const std::filesystem::path file_path = path(std::to_string(seed) + ".sw");
     MapFile::create(file_path, {}).commit(map_, {});
-    lie_and_follow();
+    add_false_loop_and_merges();
     {
       MapFile file = MapFile::open(file_path, MapAccess::kExtend);
       file.load();
@@ -271,8 +273,8 @@ TEST_F(Withdrawing, ItCanBeDoneAfterTheWayThroughAFile) {
     const StoredMap stored = file.load();
     expect_same(stored.map, map_);
     Edit edit;
-    edit.withdrawn_loops = {kLie};
-    edit.doubted_loops = {lie_};
+    edit.withdrawn_loops = {kFalse};
+    edit.suspended_loops = {false_loop_};
     const MapVersion after = apply(stored.map, edit);
     EXPECT_TRUE(partition_of(after) == before);
     file.commit(after, {});
@@ -280,21 +282,21 @@ TEST_F(Withdrawing, ItCanBeDoneAfterTheWayThroughAFile) {
   }
 }
 
-TEST_F(Withdrawing, ADoubtedLoopHoldsNothingUntilItIsBelieved) {
+TEST_F(Withdraw, ASuspendedLoopIsNoEdgeUntilItIsAccepted) {
   begin(5);
-  Edit doubt;
-  doubt.doubted_loops = {lie_};
-  const MapVersion doubted = apply(map_, doubt);
-  EXPECT_EQ(doubted.loops.size(), map_.loops.size());
-  EXPECT_EQ(doubted.doubted_loops.size(), map_.doubted_loops.size() + 1);
-  Edit believe;
-  believe.loops = {lie_};
-  const MapVersion believed = apply(doubted, believe);
-  EXPECT_EQ(believed.loops.size(), map_.loops.size() + 1);
-  EXPECT_EQ(believed.doubted_loops.size(), map_.doubted_loops.size());
+  Edit suspend;
+  suspend.suspended_loops = {false_loop_};
+  const MapVersion suspended = apply(map_, suspend);
+  EXPECT_EQ(suspended.loops.size(), map_.loops.size());
+  EXPECT_EQ(suspended.suspended_loops.size(), map_.suspended_loops.size() + 1);
+  Edit accept;
+  accept.loops = {false_loop_};
+  const MapVersion accepted = apply(suspended, accept);
+  EXPECT_EQ(accepted.loops.size(), map_.loops.size() + 1);
+  EXPECT_EQ(accepted.suspended_loops.size(), map_.suspended_loops.size());
 }
 
-TEST_F(Withdrawing, WhatBundlesFoundOfWhatIsOlderThanTheLoopSinceThenIsForgotten) {
+TEST_F(Withdraw, DropsLocalBundleAdjustmentOfOlderKeyframesSinceTheLoop) {
   begin(7);
   const std::uint64_t newest = map_.keyframes.back().id.index();
   ASSERT_GE(newest, 3U);
@@ -306,18 +308,18 @@ TEST_F(Withdrawing, WhatBundlesFoundOfWhatIsOlderThanTheLoopSinceThenIsForgotten
   refine(newest - 1);
   refine(newest);
   Edit edge;
-  edge.loops = {lie_};
+  edge.loops = {false_loop_};
   map_ = apply(std::move(map_), edge);
   refine(newest);
   add_rich_keyframe(7);
   refine(newest + 1);
-  const MapVersion after = without_lie();
-  EXPECT_TRUE(after.keyframes[newest - 1].refined_parent_from_keyframe) << "found before";
-  EXPECT_FALSE(after.keyframes[newest].refined_parent_from_keyframe) << "found across the loop";
+  const MapVersion after = without_false_loop();
+  EXPECT_TRUE(after.keyframes[newest - 1].refined_parent_from_keyframe) << "before the loop";
+  EXPECT_FALSE(after.keyframes[newest].refined_parent_from_keyframe) << "after the loop";
   EXPECT_TRUE(after.keyframes[newest + 1].refined_parent_from_keyframe) << "younger than the loop";
 }
 
-TEST_F(Withdrawing, WhatAFullBundleSettledSinceTheLoopIsForgottenEverywhere) {
+TEST_F(Withdraw, DropsFullBundleAdjustmentOfAllKeyframesSinceTheLoop) {
   begin(8);
   const std::uint64_t newest = map_.keyframes.back().id.index();
   const auto settle = [&](std::uint64_t keyframe) {
@@ -330,24 +332,24 @@ TEST_F(Withdrawing, WhatAFullBundleSettledSinceTheLoopIsForgottenEverywhere) {
   };
   settle(newest - 1);
   Edit edge;
-  edge.loops = {lie_};
+  edge.loops = {false_loop_};
   map_ = apply(std::move(map_), edge);
   add_rich_keyframe(8);
   settle(newest);
   settle(newest + 1);
-  const MapVersion after = without_lie();
-  EXPECT_TRUE(is_settled(after, newest - 1)) << "settled before";
+  const MapVersion after = without_false_loop();
+  EXPECT_TRUE(is_settled(after, newest - 1)) << "before the loop";
   EXPECT_FALSE(is_settled(after, newest));
-  EXPECT_FALSE(is_settled(after, newest + 1)) << "younger than the loop, but placed by all";
+  EXPECT_FALSE(is_settled(after, newest + 1)) << "younger than the loop, but optimized with it";
 }
 
-TEST_F(Withdrawing, ACauseOfNoLoopAndALandmarkThatIsNotMergedAreBrokenPromises) {
+TEST_F(Withdraw, RefusesUnknownCausesAndLandmarksThatAreNotMerged) {
   begin(6);
   Edit edit;
   edit.withdrawn_loops = {core::CandidateId(123456)};
   EXPECT_THROW(apply(map_, edit), core::ContractError);
   edit.withdrawn_loops = {core::CandidateId{}};
-  EXPECT_THROW(apply(map_, edit), core::ContractError) << "mapping's own merges have no cause";
+  EXPECT_THROW(apply(map_, edit), core::ContractError) << "merges of mapping have no cause";
   Edit unmerge;
   unmerge.unmerged_landmarks = {any_live()};
   EXPECT_THROW(apply(map_, unmerge), core::ContractError);

@@ -5,17 +5,11 @@
 #include <fmt/format.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/pairs/tower.hpp>
 #include <samewhere/train/held_back.hpp>
 #include <samewhere/twin/spec.hpp>
 
 namespace samewhere::train {
 namespace {
-
-bool share_floors(const pairs::TowerSource& a, const pairs::TowerSource& b) {
-  if (a.floors.empty() || b.floors.empty()) return true;
-  return std::ranges::any_of(a.floors, [&](const std::string& floor) { return b.has(floor); });
-}
 
 bool show_the_same(const std::string& a, const std::string& b) {
   if (twin::is_twin_spec(a) != twin::is_twin_spec(b)) return false;
@@ -24,12 +18,8 @@ bool show_the_same(const std::string& a, const std::string& b) {
     const twin::Spec second = twin::parse_spec(b);
     return first.preset == second.preset && first.seed == second.seed;
   }
-  const pairs::TowerSource first = pairs::tower_source(a);
-  const pairs::TowerSource second = pairs::tower_source(b);
   std::error_code ignored;  // what is not there is found when it is read
-  const bool is_one_folder = first.folder == second.folder ||
-                             std::filesystem::equivalent(first.folder, second.folder, ignored);
-  return is_one_folder && share_floors(first, second);
+  return a == b || std::filesystem::equivalent(a, b, ignored);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/train/onnx_file.hpp>
-#include <samewhere/verify/pair_view.hpp>
 
 namespace samewhere::train {
 namespace {
@@ -124,33 +123,6 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
   add_whole_number(chain.add("Flatten", "code"), "axis", 1);
 }
 
-// The planes lie one below the other, and become channels.
-void add_reshape(onnx::GraphProto& graph, Chain& chain) {
-  onnx::TensorProto& shape = *graph.add_initializer();
-  shape.set_name("shape");
-  shape.set_data_type(onnx::TensorProto::INT64);
-  shape.add_dims(4);
-  for (const std::int64_t side :
-       {1, verify::kNumPairPlanes, verify::kPairSide_px, verify::kPairSide_px})
-    shape.add_int64_data(side);
-  chain.add("Reshape", "channels").add_input("shape");
-}
-
-void add_nodes(onnx::GraphProto& graph, const PairNetwork& network) {
-  Chain chain(graph, "planes");
-  add_reshape(graph, chain);
-  const std::size_t num_convolutions = network.convolutions.size();
-  for (std::size_t i = 0; i + 1 < num_convolutions; ++i) {
-    const std::string number = std::to_string(i + 1);
-    add_convolution(graph, chain, "convolution" + number, network.convolutions[i]);
-    chain.add("Relu", "relu" + number);
-  }
-  chain.add("GlobalAveragePool", "mean");
-  add_convolution(graph, chain, "last", network.convolutions.back());
-  add_whole_number(chain.add("Flatten", "odds"), "axis", 1);
-  chain.add("Sigmoid", "same");
-}
-
 onnx::ModelProto empty_model(const std::string& description) {
   onnx::ModelProto model;
   model.set_ir_version(kIrVersion);
@@ -169,18 +141,6 @@ std::string onnx_bytes(const Encoder& encoder, const std::string& description) {
   add_shape(*graph.add_input(), "image", {1, 1, encoder.input_px.height, encoder.input_px.width});
   add_nodes(graph, encoder);
   add_shape(*graph.add_output(), "code", {1, code_size(encoder)});
-  return model.SerializeAsString();
-}
-
-std::string onnx_bytes(const PairNetwork& network, const std::string& description) {
-  onnx::ModelProto model = empty_model(description);
-  onnx::GraphProto& graph = *model.mutable_graph();
-  graph.set_name("pairs");
-  add_shape(
-      *graph.add_input(), "planes",
-      {1, 1, std::int64_t{verify::kNumPairPlanes} * verify::kPairSide_px, verify::kPairSide_px});
-  add_nodes(graph, network);
-  add_shape(*graph.add_output(), "same", {1, 1});
   return model.SerializeAsString();
 }
 

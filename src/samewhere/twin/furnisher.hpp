@@ -114,7 +114,6 @@ class Furnisher {
   // Two bays or more, 1.1 m deep; its goods are seen from both sides.
   void add_rack(const Spot& spot, const RackSize& size);
   void add_pallet(const Spot& spot);  // 1.2 m x 0.8 m with cartons
-  void add_column(const Spot& spot, float side_m);
 
   void add_ceiling_lamp(const Eigen::Vector2f& middle_m, const LampFitting& fitting,
                         float ceiling_m);

@@ -145,17 +145,4 @@ void Furnisher::add_shelf(const Spot& spot) {
   piece.end_object();
 }
 
-void Furnisher::add_column(const Spot& spot, float side_m) {
-  Piece piece = piece_at(spot);
-  const Material cast = piece.made_of(Finish::kConcrete, 0.8F * palette_.floor);
-  const Material stripe = piece.made_of(Finish::kPaint, paints::kOrange);
-  const float half_m = 0.5F * side_m;
-  constexpr float kHeight_m = 6.0F;  // goes through the ceiling
-  piece.begin_object("column");
-  piece.add_block({{-half_m, 0.0F, -half_m}, {half_m, kHeight_m, half_m}}, cast);
-  const float out_m = half_m + 0.004F;
-  piece.add_block({{-out_m, 0.1F, -out_m}, {out_m, 0.3F, out_m}}, stripe);
-  piece.end_object();
-}
-
 }  // namespace samewhere::twin

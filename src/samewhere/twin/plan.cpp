@@ -219,10 +219,6 @@ std::vector<Area> Plan::areas() const {
   return areas;
 }
 
-Eigen::Vector3d Plan::in_world(int unit, const Eigen::Vector3f& in_unit_m) const {
-  return units_[static_cast<std::size_t>(unit)].world_from_unit * in_unit_m.cast<double>();
-}
-
 Space doorway(const Space& like, const Eigen::Vector2f& middle_m, bool is_along_x) {
   constexpr float kHalfWidth_m = 0.45F;
   constexpr float kHalfWall_m = 0.075F;

@@ -57,8 +57,6 @@ class Plan {
   std::vector<WallPiece> walls_of(int space) const;
   // One for each space, in the world.
   std::vector<Area> areas() const;
-  // A point of a unit in the world.
-  Eigen::Vector3d in_world(int unit, const Eigen::Vector3f& in_unit_m) const;
 
  private:
   const Placement& placement_of(const Space& space) const {

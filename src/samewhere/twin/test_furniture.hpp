@@ -42,7 +42,6 @@ inline void furnish(Furnisher& f, int number) {
   f.add_shelf({{0.0F, 0.0F, 0.0F}, 0.3F});
   f.add_rack({{0.0F, 0.0F, 0.0F}, 0.3F}, {2.7F, 3});
   f.add_pallet({{0.0F, 0.0F, 0.0F}, 0.3F});
-  f.add_column({{0.0F, 0.0F, 0.0F}, 0.3F}, 0.4F);
   f.add_cornice(kWall, 0.06F, 0.06F);
   f.add_ceiling_lamp({0.0F, 0.0F}, {}, 2.6F);
   f.add_ceiling_vent({0.0F, 0.0F}, VentKind::kGrille, 2.6F);

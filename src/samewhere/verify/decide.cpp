@@ -23,20 +23,20 @@ Rejection rejection(const Candidate& candidate, const Evidence& evidence, Refusa
   return {candidate.id, evidence, stage, std::move(reason)};
 }
 
-// Views that share only a narrow or blurred part find a pose each, but not the same one.
-std::optional<Rejection> check_agreement(const Candidate& candidate, const Evidence& evidence,
-                                         const Config& config) {
-  const double apart_m = evidence.geometry->disagreement_m.value_or(0.0);
-  const double apart_rad = evidence.geometry->disagreement_rad.value_or(0.0);
+// Views that share only a narrow or blurred part give a pose each, but not the same one.
+std::optional<Rejection> check_consistency(const Candidate& candidate, const Evidence& evidence,
+                                           const Config& config) {
+  const double apart_m = evidence.geometry->pose_difference_m.value_or(0.0);
+  const double apart_rad = evidence.geometry->pose_difference_rad.value_or(0.0);
   if (apart_m <= config.max_pose_difference_m && apart_rad <= config.max_pose_difference_rad) {
     return std::nullopt;
   }
   if (!std::isfinite(apart_m)) {
-    return rejection(candidate, evidence, Refusal::kAgreement,
-                     "only one of the two views finds a relative pose");
+    return rejection(candidate, evidence, Refusal::kConsistency,
+                     "only one of the two views gives a relative pose");
   }
-  return rejection(candidate, evidence, Refusal::kAgreement,
-                   fmt::format("the relative poses found from each of the two views differ by "
+  return rejection(candidate, evidence, Refusal::kConsistency,
+                   fmt::format("the relative poses from the depth of each view differ by "
                                "{:.2f} m and {:.1f} degrees",
                                apart_m, apart_rad * kDegrees));
 }
@@ -53,31 +53,30 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
         candidate, evidence, Refusal::kMatches,
         fmt::format("only {} feature matches, {} needed", g.num_matches, config.min_matches));
   }
-  const bool is_for_itself = !needs_sequence(g, config);
+  const bool is_by_itself = !needs_sequence(g, config);
   const int min_inliers = inliers_needed(g, config);
   if (g.num_inliers < min_inliers) {
-    return rejection(candidate, evidence, Refusal::kInliers,
-                     fmt::format("only {} features agree on one geometry, {} needed", g.num_inliers,
-                                 min_inliers));
-  }
-  if (is_for_itself && g.spread_ratio < config.min_spread_ratio) {
     return rejection(
-        candidate, evidence, Refusal::kSpread,
-        fmt::format("the features that agree cover {:.0f} % of the picture, {:.0f} % needed",
-                    100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
+        candidate, evidence, Refusal::kInliers,
+        fmt::format("only {} inliers of one geometry, {} needed", g.num_inliers, min_inliers));
+  }
+  if (is_by_itself && g.spread_ratio < config.min_spread_ratio) {
+    return rejection(candidate, evidence, Refusal::kSpread,
+                     fmt::format("the inliers cover {:.0f} % of the image, {:.0f} % needed",
+                                 100.0 * g.spread_ratio, 100.0 * config.min_spread_ratio));
   }
   if (config.require_pose && !g.match_from_query) {
     return rejection(candidate, evidence, Refusal::kPose,
-                     "no relative pose: too few of the features that agree have a known depth");
+                     "no relative pose: too few inliers with known depth");
   }
-  return check_agreement(candidate, evidence, config);
+  return check_consistency(candidate, evidence, config);
 }
 
-// Without depth: what the scale would have to have done.
-std::string crept(const Evidence& evidence) {
+// Without depth: the scale drift that the candidate implies.
+std::string scale_drift_text(const Evidence& evidence) {
   const auto& pose = evidence.geometry->match_from_query;
   if (!pose || pose->scale == 1.0) return "";
-  return fmt::format(", and what is 1 long to be {:.2f} long", pose->scale);
+  return fmt::format(" with scale {:.2f}", pose->scale);
 }
 
 std::optional<Rejection> check_odometry(const Candidate& candidate, const Evidence& evidence,
@@ -90,70 +89,69 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
       fmt::format("would move the camera by {:.2f} m and {:.1f} degrees{}, more than odometry can "
                   "have drifted (chi-square {:.0f}, at most {:.0f})",
                   evidence.odometry->correction_m, evidence.odometry->correction_rad * kDegrees,
-                  crept(evidence), evidence.odometry->mahalanobis_squared,
+                  scale_drift_text(evidence), evidence.odometry->mahalanobis_squared,
                   config.max_odometry_chi_square));
 }
 
-// Odometry can tell.
-bool overrules(const core::RivalEvidence& rival, const Config& config) {
-  return rival.mahalanobis_squared > config.max_competing_chi_square && rival.gain &&
-         *rival.gain >= config.min_competing_gain;
+// Odometry decides for the candidate, against the loops that it contradicts.
+bool overrules(const core::CompetingLoopEvidence& loop, const Config& config) {
+  return loop.mahalanobis_squared > config.max_competing_chi_square && loop.gain &&
+         *loop.gain >= config.min_competing_gain;
 }
 
-// Two places that explain the view: nobody can tell which.
-std::optional<core::Verdict> check_rival(const Candidate& candidate, const Evidence& evidence,
-                                         const Config& config) {
-  if (!evidence.rival) return std::nullopt;
-  const core::RivalEvidence& rival = *evidence.rival;
-  if (rival.mahalanobis_squared <= config.max_competing_chi_square || overrules(rival, config))
+// An earlier loop has put the query at another place.
+std::optional<core::Verdict> check_competing_loop(const Candidate& candidate,
+                                                  const Evidence& evidence, const Config& config) {
+  if (!evidence.competing_loop) return std::nullopt;
+  const core::CompetingLoopEvidence& loop = *evidence.competing_loop;
+  if (loop.mahalanobis_squared <= config.max_competing_chi_square || overrules(loop, config))
     return std::nullopt;
   return core::Ambiguous{
-      candidate.id, evidence, Refusal::kRival,
+      candidate.id, evidence, Refusal::kCompeting,
       fmt::format(
-          "the last loop has put the camera where frame {} was taken, {:.2f} m and {:.1f} "
-          "degrees from here, more than odometry can have drifted since (chi-square {:.0f}, "
-          "at most {:.0f})",
-          rival.frame.index(), rival.apart_m, rival.apart_rad * kDegrees, rival.mahalanobis_squared,
+          "the last loop places the camera at frame {}, {:.2f} m and {:.1f} degrees from here, "
+          "more than odometry can have drifted since (chi-square {:.0f}, at most {:.0f})",
+          loop.frame.index(), loop.apart_m, loop.apart_rad * kDegrees, loop.mahalanobis_squared,
           config.max_competing_chi_square)};
 }
 
-// Two places that explain the view about as well.
-std::optional<core::Verdict> check_other_place(const Candidate& candidate, const Evidence& evidence,
-                                               const Config& config) {
-  if (!evidence.other_place) return std::nullopt;
-  // the other one may go with the loops that odometry speaks against
-  if (evidence.rival && overrules(*evidence.rival, config)) return std::nullopt;
-  const core::OtherPlaceEvidence& other = *evidence.other_place;
+// Another candidate of the query has about as many inliers at another place.
+std::optional<core::Verdict> check_competing_place(const Candidate& candidate,
+                                                   const Evidence& evidence, const Config& config) {
+  if (!evidence.competing_place) return std::nullopt;
+  // the other candidate may agree with the loops that odometry rejects
+  if (evidence.competing_loop && overrules(*evidence.competing_loop, config)) return std::nullopt;
+  const core::CompetingPlaceEvidence& place = *evidence.competing_place;
   const int num_inliers = evidence.geometry->num_inliers;
-  if (other.num_inliers <= config.max_competing_place_ratio * num_inliers) return std::nullopt;
+  if (place.num_inliers <= config.max_competing_place_ratio * num_inliers) return std::nullopt;
   return core::Ambiguous{
-      candidate.id, evidence, Refusal::kRival,
-      fmt::format("frame {} shows another place, {:.2f} m and {:.1f} degrees from here, with which "
-                  "{} features agree; at most {:.0f} % of the {} that agree here",
-                  other.frame.index(), other.apart_m, other.apart_rad * kDegrees, other.num_inliers,
-                  100.0 * config.max_competing_place_ratio, num_inliers)};
+      candidate.id, evidence, Refusal::kCompeting,
+      fmt::format(
+          "frame {} shows another place, {:.2f} m and {:.1f} degrees from here, with {} inliers; "
+          "at most {:.0f} % of the {} here",
+          place.frame.index(), place.apart_m, place.apart_rad * kDegrees, place.num_inliers,
+          100.0 * config.max_competing_place_ratio, num_inliers)};
 }
 
-// Not a loop yet, or never.
+// Pending, or given up.
 std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Evidence& evidence,
                                             const Config& config) {
   const core::SequenceEvidence sequence = evidence.sequence.value_or(core::SequenceEvidence{});
   if (sequence.num_views >= config.min_views) return std::nullopt;
   if (sequence.is_over) {
     return rejection(candidate, evidence, Refusal::kSequence,
-                     fmt::format("only {} views in a row go on to match, {} needed",
-                                 sequence.num_views, config.min_views));
+                     fmt::format("only {} consecutive views match, {} needed", sequence.num_views,
+                                 config.min_views));
   }
-  return core::Ambiguous{
-      candidate.id, evidence, Refusal::kSequence,
-      fmt::format("{} views in a row go on to match so far, {} needed: waits for those that follow",
-                  sequence.num_views, config.min_views)};
+  return core::Ambiguous{candidate.id, evidence, Refusal::kSequence,
+                         fmt::format("{} consecutive views match so far, {} needed: pending",
+                                     sequence.num_views, config.min_views)};
 }
 
 std::optional<core::Verdict> check_other_views(const Candidate& candidate, const Evidence& evidence,
                                                const Config& config) {
-  auto undecided = check_rival(candidate, evidence, config);
-  if (!undecided) undecided = check_other_place(candidate, evidence, config);
+  auto undecided = check_competing_loop(candidate, evidence, config);
+  if (!undecided) undecided = check_competing_place(candidate, evidence, config);
   if (!undecided && needs_sequence(*evidence.geometry, config))
     undecided = check_sequence(candidate, evidence, config);
   return undecided;
@@ -162,11 +160,11 @@ std::optional<core::Verdict> check_other_views(const Candidate& candidate, const
 // A similarity, mapped into [0, 1).
 double below_1(double similarity) { return 0.499 * (1.0 + similarity); }
 
-// With its pose, and against whom it contradicts.
-void join(core::LoopClosure& loop, const Config& config) {
+// The loop's edge, and the loop that it overrules.
+void add_edge(core::LoopClosure& loop, const Config& config) {
   loop.match_from_query = loop.evidence.geometry->match_from_query;
-  const auto& rival = loop.evidence.rival;
-  if (rival && overrules(*rival, config)) loop.overruled = rival->first_loop;
+  const auto& competing = loop.evidence.competing_loop;
+  if (competing && overrules(*competing, config)) loop.overruled = competing->first_loop;
 }
 
 }  // namespace
@@ -217,7 +215,7 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
   if (!refused) {
     const auto undecided = check_other_views(candidate, evidence, config);
     if (undecided && config.require_geometry) return *undecided;
-    if (!undecided) join(loop, config);
+    if (!undecided) add_edge(loop, config);
   }
   // with depth it is 1, not about 1
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;

@@ -7,18 +7,17 @@
 
 namespace samewhere::verify {
 
-// What was decided before, as far as it bears on the next decision.
+// Earlier verdicts that count for the next one.
 struct History {
   std::optional<core::FrameId> last_loop_query;
 };
 
 // The verdict on measured evidence: the checks in the order of core::Refusal, the first that fails
-// refuses. Pure: the same evidence, history and thresholds give the same verdict, without any
-// picture.
+// decides. Pure: the same evidence, history and thresholds give the same verdict, without images.
 core::Verdict decide(const core::Candidate& candidate, const core::Evidence& evidence,
                      const History& history, const Config& config);
 
-// Whether the evidence so far is enough to refuse, so that nothing dearer need be measured.
+// The checks before the geometry: similarity and pause.
 std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
                                             const core::Evidence& evidence, const History& history,
                                             const Config& config);

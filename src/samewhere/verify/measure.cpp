@@ -56,6 +56,8 @@ class PoseMeasurement {
  public:
   PoseMeasurement(const View& query, const View& match, const MeasureSettings& settings)
       : query_(query), match_(match), settings_(settings), points_(points_of(match)) {}
+  PoseMeasurement(const PoseMeasurement&) = delete;
+  PoseMeasurement& operator=(const PoseMeasurement&) = delete;
 
   GeometryEvidence measure(const std::vector<Match>& matches, core::Random& random) const {
     GeometryEvidence evidence;
@@ -190,15 +192,15 @@ GeometryEvidence measure_both_ways(const View& query, const View& match,
       PoseMeasurement(match, query, settings).measure(swapped(matches), random);
   if (!back.match_from_query) {
     // one view alone finds a pose: they could not disagree more
-    evidence.disagreement_m = std::numeric_limits<double>::infinity();
-    evidence.disagreement_rad = std::numeric_limits<double>::infinity();
+    evidence.pose_difference_m = std::numeric_limits<double>::infinity();
+    evidence.pose_difference_rad = std::numeric_limits<double>::infinity();
     return evidence;
   }
   const core::Sim3 forth = *evidence.match_from_query;
   const core::Sim3 forth_again = inverse(*back.match_from_query);
   const core::Rigid3 apart = inverse(rigid_part(forth)) * rigid_part(forth_again);
-  evidence.disagreement_m = apart.translation.norm();
-  evidence.disagreement_rad = core::angle_rad(apart.rotation);
+  evidence.pose_difference_m = apart.translation.norm();
+  evidence.pose_difference_rad = core::angle_rad(apart.rotation);
   const core::Rigid3 mean = interpolate(rigid_part(forth), rigid_part(forth_again), 0.5);
   evidence.match_from_query =
       core::Sim3{std::sqrt(forth.scale * forth_again.scale), mean.rotation, mean.translation};

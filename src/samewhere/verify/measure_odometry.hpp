@@ -12,12 +12,10 @@ struct ScaleErrors {
   double loop = 0.05;   // as a loop measures it
 };
 
-// How far the loop `claim` (its ends, its pose and its scale) would move the query from where the
-// map has it, against the drift that odometry may have gathered between the two keyframes (their
-// path through the parents; information of the odometry edges). The scale of a camera without depth
-// creeps, mostly one way: by how much in all, the claim says itself, so that it is held against the
-// path with the lengths that creep would have made of it, spread evenly over its keyframes
-// (docs/decisions/027).
+// Odometry gate: the correction of the query's pose by the loop `claim`, and its Mahalanobis
+// distance under the drift accumulated between both keyframes (their chain of odometry edges) and
+// the covariance of the loop. Without depth the total scale drift is that of the claim; it is
+// spread evenly over the keyframes of the chain before the comparison (docs/decisions/027).
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config);
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/features/test_world.hpp>
+#include <samewhere/verify/measure_competing.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
-#include <samewhere/verify/measure_rival.hpp>
 
 namespace samewhere::verify {
 namespace {
@@ -41,14 +41,14 @@ scene::LoopEdge claim(int query, int match, const core::Rigid3& match_from_query
   return loop;
 }
 
-TEST(MeasureOdometry, ALoopThatAgreesWithOdometryMovesNothing) {
+TEST(MeasureOdometry, ALoopThatAgreesWithOdometryHasNoCorrection) {
   const auto evidence = measure_odometry(
       corridor(10), claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}), {}, {});
   EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
   EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
 }
 
-TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALongOne) {
+TEST(MeasureOdometry, TheSameCorrectionCountsMoreAfterAShortChain) {
   const core::Rigid3 beside{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.0}};
   const auto after = [&](int steps) {
     core::Rigid3 match_from_query = beside;
@@ -60,7 +60,7 @@ TEST(MeasureOdometry, TheSameCorrectionIsLessCredibleAfterAShortWayThanAfterALon
   EXPECT_LT(after(60).mahalanobis_squared, after(5).mahalanobis_squared / 5.0);
 }
 
-TEST(MeasureOdometry, WithoutDepthTheWayMayBeLongerOrShorterThanItSeemedButNoMoreBent) {
+TEST(MeasureOdometry, WithoutDepthTheGateIsWiderAlongTheChainOnly) {
   const features::View without_depth =
       features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
   const auto squared = [&](const features::View& view, const Eigen::Vector3d& error) {
@@ -74,8 +74,8 @@ TEST(MeasureOdometry, WithoutDepthTheWayMayBeLongerOrShorterThanItSeemedButNoMor
   EXPECT_NEAR(squared(without_depth, aside), squared({}, aside), 1e-6);
 }
 
-// Once round a square of ten steps a side, each a metre in truth, of a camera without depth whose
-// scale creeps by as much at every keyframe.
+// Once around a square of ten steps a side, each a metre in truth, of a camera without depth with
+// the same scale drift at every keyframe.
 scene::MapVersion square_seen_without_depth(double creep) {
   const features::View view = features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
   scene::Edit edit;
@@ -100,7 +100,7 @@ scene::MapVersion square_seen_without_depth(double creep) {
   return apply(scene::MapVersion{}, edit);
 }
 
-TEST(MeasureOdometry, WithoutDepthALoopTellsHowFarTheScaleCreptAndTheRestMustFit) {
+TEST(MeasureOdometry, WithoutDepthTheScaleDriftOfTheLoopIsTakenOut) {
   const double creep = 0.02;
   const scene::MapVersion map = square_seen_without_depth(creep);
   const auto squared = [&](const Eigen::Vector3d& error, double log_scale) {
@@ -111,11 +111,11 @@ TEST(MeasureOdometry, WithoutDepthALoopTellsHowFarTheScaleCreptAndTheRestMustFit
   const double limit = Config{}.max_odometry_chi_square;
   const Eigen::Vector3d aside(2.0, 0.0, 0.0);
   EXPECT_LT(squared(Eigen::Vector3d::Zero(), 40 * creep), 1.0) << "back where it began";
-  EXPECT_GT(squared(Eigen::Vector3d::Zero(), 0.0), limit) << "nothing crept, and yet far away";
+  EXPECT_GT(squared(Eigen::Vector3d::Zero(), 0.0), limit) << "no scale drift, and yet far away";
   EXPECT_GT(squared(aside, 40 * creep), limit) << "another corridor, seen at the same scale";
 }
 
-TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
+TEST(MeasureOdometry, WithoutACommonOriginTheGateIsOpen) {
   scene::MapVersion map = corridor(3);
   scene::Edit edit;
   edit.keyframes.resize(1);
@@ -125,7 +125,7 @@ TEST(MeasureOdometry, WithoutACommonOriginOdometryHasNoOpinion) {
   EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
 }
 
-// A corridor whose keyframe 20 a loop has put where keyframe 2 is.
+// A corridor with a loop from keyframe 20 to keyframe 2.
 scene::MapVersion corridor_with_loop() {
   scene::MapVersion map = corridor(80);
   scene::Edit edit;
@@ -133,7 +133,7 @@ scene::MapVersion corridor_with_loop() {
   return apply(map, edit);
 }
 
-// A claim about this keyframe that would move it sideways by so much.
+// A claim that would move this keyframe sideways by so much.
 scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres) {
   const scene::LoopEdge ends = claim(query, 3, {});
   core::Rigid3 match_from_query =
@@ -142,11 +142,11 @@ scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres)
   return claim(query, 3, match_from_query);
 }
 
-TEST(MeasureOtherPlace, TwoClaimsShowTwoPlacesIfOdometryCannotJoinThem) {
+TEST(MeasureCompetingPlace, TwoClaimsShowTwoPlacesIfOdometryKeepsTheirMatchesApart) {
   const scene::MapVersion map = corridor(40);
   const core::Rigid3 here;
   const auto places = [&](const scene::LoopEdge& one, const scene::LoopEdge& other) {
-    return measure_other_place(map, one, other, {}, {});
+    return measure_competing_place(map, one, other, {}, {});
   };
   const auto apart = places(claim(39, 2, here), claim(39, 8, here));
   ASSERT_TRUE(apart) << "it cannot be at both ends of six metres";
@@ -157,16 +157,16 @@ TEST(MeasureOtherPlace, TwoClaimsShowTwoPlacesIfOdometryCannotJoinThem) {
       << "one place, seen from two";
 }
 
-TEST(MeasureRival, TheFirstLookAlikeHasNone) {
+TEST(MeasureCompetingLoop, TheFirstLoopHasNone) {
   const scene::MapVersion map = corridor_with_loop();
-  EXPECT_FALSE(measure_rival(map, sideways(map, 19, 1.8), {}, {}));
-  EXPECT_TRUE(measure_rival(map, sideways(map, 20, 1.8), {}, {}));
+  EXPECT_FALSE(measure_competing_loop(map, sideways(map, 19, 1.8), {}, {}));
+  EXPECT_TRUE(measure_competing_loop(map, sideways(map, 20, 1.8), {}, {}));
 }
 
-TEST(MeasureRival, WhatTheLastLoopSaysFadesWithTheWaySince) {
+TEST(MeasureCompetingLoop, ItsChiSquareShrinksWithTheDriftSinceTheLastLoop) {
   const scene::MapVersion map = corridor_with_loop();
   const auto after = [&](int keyframes, double metres) {
-    return *measure_rival(map, sideways(map, 20 + keyframes, metres), {}, {});
+    return *measure_competing_loop(map, sideways(map, 20 + keyframes, metres), {}, {});
   };
   EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
   EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
@@ -189,70 +189,70 @@ scene::MapVersion corridor_moved_by(const std::vector<int>& queries, double metr
   return apply(map, edit);
 }
 
-TEST(MeasureRival, OdometrySpeaksForWhoSaysWhatItSaid) {
+TEST(MeasureCompetingLoop, TheGainFavoursTheClaimThatAgreesWithOdometry) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 4.0);
-  const auto back = measure_rival(map, sideways(map, 24, -4.0), {}, {});
+  const auto back = measure_competing_loop(map, sideways(map, 24, -4.0), {}, {});
   ASSERT_TRUE(back && back->gain);
-  EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second only says what the first did";
+  EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second agrees with the first";
   EXPECT_GT(*back->gain, 9.0);
-  const auto further = measure_rival(map, sideways(map, 24, 4.0), {}, {});
+  const auto further = measure_competing_loop(map, sideways(map, 24, 4.0), {}, {});
   ASSERT_TRUE(further && further->gain);
   EXPECT_LT(*further->gain, -9.0);
 }
 
-TEST(MeasureRival, AnEarlierLoopThatGoesWithTheClaimIsWhereOdometryIsHeldAgainst) {
+TEST(MeasureCompetingLoop, AnEarlierLoopThatAgreesWithTheClaimIsTheBaseOfTheGain) {
   scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  const auto without = measure_rival(map, sideways(map, 24, -1.8), {}, {});
+  const auto without = measure_competing_loop(map, sideways(map, 24, -1.8), {}, {});
   ASSERT_TRUE(without && without->gain);
   scene::Edit edit;
   edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
   map = apply(map, edit);
-  const auto with = measure_rival(map, sideways(map, 24, -1.8), {}, {});
+  const auto with = measure_competing_loop(map, sideways(map, 24, -1.8), {}, {});
   ASSERT_TRUE(with && with->gain);
   EXPECT_EQ(with->first_loop, core::CandidateId(20));
   EXPECT_GT(*with->gain, 3.0 * std::abs(*without->gain))
-      << "two keyframes leave the lie less room than twenty";
+      << "the covariance of two keyframes is smaller than that of twenty";
 }
 
-// After a long way odometry allows both; but it goes better with the lies before it than the claim.
-TEST(MeasureRival, ALoopThatGoesWithTheContradictorsIsNoGroundForTheClaim) {
+// After a long chain odometry allows both, but the loop fits the false ones before it better.
+TEST(MeasureCompetingLoop, ALoopThatFitsTheContradictingOnesBetterIsNoBase) {
   const scene::MapVersion map =
       corridor_moved_by({20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70}, 4.0);
-  const auto rival = measure_rival(map, sideways(map, 72, -4.0), {}, {});
-  ASSERT_TRUE(rival && rival->gain);
-  EXPECT_EQ(rival->first_loop, core::CandidateId(20));
+  const auto competing = measure_competing_loop(map, sideways(map, 72, -4.0), {}, {});
+  ASSERT_TRUE(competing && competing->gain);
+  EXPECT_EQ(competing->first_loop, core::CandidateId(20));
 }
 
-// Its short way leaves a claim little room, but that is nothing against a loop whose way was long.
-TEST(MeasureRival, AMatchNearByIsNoEvidenceByItself) {
+// The small covariance of a short chain is no evidence against a loop over a long one.
+TEST(MeasureCompetingLoop, AShortChainIsNoEvidenceByItself) {
   scene::MapVersion map = corridor(80);
   scene::Edit edit;
   edit.loops.push_back(claim(60, 3, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 57.0}}));
   map = apply(map, edit);
-  const auto rival =
-      measure_rival(map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), {}, {});
-  ASSERT_TRUE(rival && rival->gain);
-  EXPECT_LT(*rival->gain, -10.0);
+  const auto competing = measure_competing_loop(
+      map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), {}, {});
+  ASSERT_TRUE(competing && competing->gain);
+  EXPECT_LT(*competing->gain, -10.0);
 }
 
-TEST(MeasureRival, WhoGoesWithTheLastLoopOrIsBeyondTheGateComparesNothing) {
+TEST(MeasureCompetingLoop, WithTheLastLoopOrBeyondTheGateThereIsNoGain) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  EXPECT_FALSE(measure_rival(map, sideways(map, 24, 0.1), {}, {})->gain);
-  const auto beyond = measure_rival(map, sideways(map, 24, 8.0), {}, {});
+  EXPECT_FALSE(measure_competing_loop(map, sideways(map, 24, 0.1), {}, {})->gain);
+  const auto beyond = measure_competing_loop(map, sideways(map, 24, 8.0), {}, {});
   EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_FALSE(beyond->gain);
 }
 
-TEST(MeasureRival, WithoutDepthNothingIsCompared) {
+TEST(MeasureCompetingLoop, WithoutDepthThereIsNoGain) {
   scene::MapVersion map =
       corridor(40, features::test_view(features::test_world(1, 20), 0, core::Rigid3{}, 0.0, false));
   scene::Edit edit;
   edit.loops.push_back(sideways(map, 20, 0.0));
   map = apply(map, edit);
-  const auto rival = measure_rival(map, sideways(map, 22, 1.8), {}, {});
-  ASSERT_TRUE(rival);
-  EXPECT_GT(rival->mahalanobis_squared, Config{}.max_competing_chi_square);
-  EXPECT_FALSE(rival->gain);
+  const auto competing = measure_competing_loop(map, sideways(map, 22, 1.8), {}, {});
+  ASSERT_TRUE(competing);
+  EXPECT_GT(competing->mahalanobis_squared, Config{}.max_competing_chi_square);
+  EXPECT_FALSE(competing->gain);
 }
 
 }  // namespace

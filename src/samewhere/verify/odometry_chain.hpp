@@ -44,11 +44,10 @@ class ClimbingChain {
   OdometryChain chain_;
 };
 
-// Where the end is in the beginning, by the map, with the covariance of the chain. Without depth in
-// lengths of the beginning, if the scale is known to have crept by exp(log_scale) on the way:
-// evenly over the keyframes but for what it creeps at random (a Brownian bridge), and not between
-// the ends of a loop that has been closed. How fast it creeps evenly need not be known. The
-// covariance is that of the chain, as much longer as the path, and of the scale.
+// Pose of the end in the beginning by the map, with the covariance of the chain. Without depth in
+// the scale of the beginning, given a scale drift of exp(log_scale) along the chain: even over the
+// keyframes plus a random part (a Brownian bridge), and none between the ends of a closed loop. The
+// covariance is that of the chain, scaled with its length, and of the scale.
 geometry::UncertainPose expected_end(const scene::MapVersion& map, const OdometryChain& chain,
                                      double log_scale, const ScaleErrors& scale);
 

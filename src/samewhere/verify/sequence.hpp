@@ -6,8 +6,7 @@
 
 namespace samewhere::verify {
 
-// Numbers of two views that show the same, so somebody claims; views are counted by what they show
-// (ViewCounter).
+// Numbers of two views of a candidate; views are counted by their content (ViewCounter).
 struct ViewPair {
   int query = 0;
   int match = 0;

@@ -58,9 +58,9 @@ TEST(LongestSequences, KnowsItsEndsAndTheInliersOfItsBestClaims) {
   EXPECT_EQ(found[0].last, (ViewPair{53, 12}));
 }
 
-TEST(LongestSequences, NobodyClaimsNothing) { EXPECT_TRUE(longest_sequences({}, 3).empty()); }
+TEST(LongestSequences, NoClaimsAreNoSequences) { EXPECT_TRUE(longest_sequences({}, 3).empty()); }
 
-TEST(ViewCounter, WhoStandsStillSeesOneViewAndWhoTurnsAwayAnother) {
+TEST(ViewCounter, StandingStillIsOneViewAndTurningAwayAnother) {
   const features::TestWorld world = features::test_world(1);
   const core::Rigid3 moved_a_little{core::exp_so3({0.0, 0.01, 0.0}), {0.01, 0.0, 0.0}};
   const features::TestWorld elsewhere = features::test_world(2);

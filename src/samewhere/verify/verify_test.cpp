@@ -27,9 +27,9 @@ TEST(MeasureGeometry, FindsTheRelativePoseOfTheSamePlace) {
             0.005);
   EXPECT_GE(evidence.num_guided_matches, evidence.num_inliers);
   EXPECT_GT(evidence.num_inliers, 100);
-  ASSERT_TRUE(evidence.disagreement_m && evidence.disagreement_rad);
-  EXPECT_LT(*evidence.disagreement_m, 0.02);
-  EXPECT_LT(*evidence.disagreement_rad, 0.01);
+  ASSERT_TRUE(evidence.pose_difference_m && evidence.pose_difference_rad);
+  EXPECT_LT(*evidence.pose_difference_m, 0.02);
+  EXPECT_LT(*evidence.pose_difference_rad, 0.01);
   EXPECT_GT(evidence.spread_ratio, 0.5);
   // turned by 0.2 rad, which is 100 of 640 pixels
   EXPECT_NEAR(evidence.overlap_ratio, 0.8, 0.1);
@@ -70,11 +70,11 @@ TEST(MeasureGeometry, BetweenViewsOfTwoScalesItFindsHowMuchLongerOneIs) {
   EXPECT_LT(core::angle_rad(kMoved.rotation.conjugate() * evidence.match_from_query->rotation),
             0.005);
   EXPECT_GT(evidence.num_inliers, 100);
-  ASSERT_TRUE(evidence.disagreement_m);
-  EXPECT_LT(*evidence.disagreement_m, 0.03);
+  ASSERT_TRUE(evidence.pose_difference_m);
+  EXPECT_LT(*evidence.pose_difference_m, 0.03);
 }
 
-TEST(MeasureGeometry, TwoPlacesHaveNothingInCommon) {
+TEST(MeasureGeometry, TwoPlacesHaveFewInliers) {
   const auto evidence =
       measure_geometry(candidate(9, 0), features::test_view(features::test_world(1), 9, {}),
                        features::test_view(features::test_world(2), 0, {}), {});
@@ -126,7 +126,7 @@ TEST(Decide, GoodEvidenceIsALoopWithAPose) {
   EXPECT_TRUE(std::get<core::LoopClosure>(verdict).match_from_query);
 }
 
-TEST(Decide, EachCheckRefusesUnderItsOwnName) {
+TEST(Decide, EachCheckRejectsUnderItsOwnName) {
   const Config config;
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_matches = config.min_matches - 1;
@@ -138,11 +138,11 @@ TEST(Decide, EachCheckRefusesUnderItsOwnName) {
   evidence.geometry->spread_ratio = 0.5 * config.min_spread_ratio;
   EXPECT_EQ(stage(evidence, config), "spread");
   evidence = good_evidence();
-  evidence.geometry->disagreement_m = 2.0 * config.max_pose_difference_m;
-  EXPECT_EQ(stage(evidence, config), "agreement");
+  evidence.geometry->pose_difference_m = 2.0 * config.max_pose_difference_m;
+  EXPECT_EQ(stage(evidence, config), "consistency");
   evidence = good_evidence();
-  evidence.geometry->disagreement_rad = 2.0 * config.max_pose_difference_rad;
-  EXPECT_EQ(stage(evidence, config), "agreement");
+  evidence.geometry->pose_difference_rad = 2.0 * config.max_pose_difference_rad;
+  EXPECT_EQ(stage(evidence, config), "consistency");
   evidence = good_evidence();
   evidence.odometry->mahalanobis_squared = 2.0 * config.max_odometry_chi_square;
   EXPECT_EQ(stage(evidence, config), "odometry");
@@ -151,7 +151,7 @@ TEST(Decide, EachCheckRefusesUnderItsOwnName) {
   EXPECT_EQ(stage(evidence, config), "accepted");
 }
 
-TEST(Decide, WhereAMapIsBuiltLooksAloneAreNoLoop) {
+TEST(Decide, WithRequirePoseInliersAloneAreNoLoop) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->match_from_query.reset();
   evidence.odometry.reset();
@@ -159,7 +159,7 @@ TEST(Decide, WhereAMapIsBuiltLooksAloneAreNoLoop) {
   EXPECT_EQ(stage(evidence, {.require_pose = false, .min_views = 1}), "accepted");
 }
 
-TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
+TEST(Decide, WithoutAPoseTheSequenceDecides) {
   const Config alone{.require_pose = false};
   core::Evidence evidence = good_evidence();
   EXPECT_EQ(stage(evidence, alone), "accepted") << "both views find the same pose";
@@ -169,7 +169,7 @@ TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
   evidence.sequence = core::SequenceEvidence{.num_views = alone.min_views - 1};
   const auto waits = decide(candidate(100, 0), evidence, {}, alone);
   EXPECT_EQ(core::name_of(waits), "AMBIGUOUS");
-  EXPECT_NE(core::reason_of(waits).find("9 views in a row go on to match so far, 10 needed"),
+  EXPECT_NE(core::reason_of(waits).find("9 consecutive views match so far, 10 needed"),
             std::string::npos);
   evidence.sequence->is_over = true;
   EXPECT_EQ(stage(evidence, alone), "sequence");
@@ -183,7 +183,7 @@ TEST(Decide, WithoutAPoseTheViewsAroundDecide) {
   EXPECT_EQ(stage(evidence, alone), "inliers");
 }
 
-TEST(Decide, ARefusalSaysWhyInASentenceWithItsFigures) {
+TEST(Decide, ARejectionHasAReasonWithItsMetrics) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_inliers = 17;
   const std::string reason =
@@ -255,60 +255,60 @@ TEST(Rank, OfWhatMayAgreeByChanceNoOverlapIsKnown) {
   EXPECT_GT(rank(chance, config), rank(nearly, config)) << "of equals the more similar";
 }
 
-TEST(Decide, WhereOdometrySpeaksForItALoopOverrulesThoseThatContradictIt) {
+TEST(Decide, ALoopOverrulesThoseThatContradictItWithEnoughGain) {
   core::Evidence evidence = good_evidence();
-  evidence.rival = core::RivalEvidence{.frame = core::FrameId(20),
-                                       .mahalanobis_squared = 31.0,
-                                       .first_loop = core::CandidateId(7),
-                                       .gain = Config{}.min_competing_gain - 0.1};
-  EXPECT_EQ(stage(evidence, {}), "rival");
-  evidence.rival->gain = Config{}.min_competing_gain + 0.1;
+  evidence.competing_loop = core::CompetingLoopEvidence{.frame = core::FrameId(20),
+                                                        .mahalanobis_squared = 31.0,
+                                                        .first_loop = core::CandidateId(7),
+                                                        .gain = Config{}.min_competing_gain - 0.1};
+  EXPECT_EQ(stage(evidence, {}), "competing");
+  evidence.competing_loop->gain = Config{}.min_competing_gain + 0.1;
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   ASSERT_TRUE(core::is_loop(verdict));
   EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));
-  evidence.rival->mahalanobis_squared = 29.0;
+  evidence.competing_loop->mahalanobis_squared = 29.0;
   const auto agreeing = decide(candidate(100, 0), evidence, {}, {});
   EXPECT_FALSE(std::get<core::LoopClosure>(agreeing).overruled.is_valid()) << "nothing contradicts";
 }
 
-TEST(Decide, WhereAnotherPlaceExplainsTheViewAboutAsWellNobodyCanTell) {
+TEST(Decide, ACompetingPlaceWithAboutAsManyInliersIsAmbiguous) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_inliers = 200;
-  evidence.other_place = core::OtherPlaceEvidence{
+  evidence.competing_place = core::CompetingPlaceEvidence{
       .frame = core::FrameId(20), .num_inliers = 150, .apart_m = 5.9, .apart_rad = 0.01};
   EXPECT_EQ(stage(evidence, {}), "accepted");
-  evidence.other_place->num_inliers = 151;
+  evidence.competing_place->num_inliers = 151;
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
-  EXPECT_EQ(core::stage_of(verdict), "rival");
+  EXPECT_EQ(core::stage_of(verdict), "competing");
   EXPECT_NE(core::reason_of(verdict).find("frame 20 shows another place, 5.90 m"),
             std::string::npos);
 }
 
-TEST(Decide, AnotherPlaceThatGoesWithOverruledLoopsDoesNotCount) {
+TEST(Decide, ACompetingPlaceThatAgreesWithOverruledLoopsDoesNotCount) {
   core::Evidence evidence = good_evidence();
-  evidence.other_place = core::OtherPlaceEvidence{
+  evidence.competing_place = core::CompetingPlaceEvidence{
       .frame = core::FrameId(20), .num_inliers = 2 * evidence.geometry->num_inliers};
-  EXPECT_EQ(stage(evidence, {}), "rival");
-  evidence.rival = core::RivalEvidence{.frame = core::FrameId(20),
-                                       .mahalanobis_squared = 31.0,
-                                       .first_loop = core::CandidateId(7),
-                                       .gain = Config{}.min_competing_gain + 0.1};
+  EXPECT_EQ(stage(evidence, {}), "competing");
+  evidence.competing_loop = core::CompetingLoopEvidence{.frame = core::FrameId(20),
+                                                        .mahalanobis_squared = 31.0,
+                                                        .first_loop = core::CandidateId(7),
+                                                        .gain = Config{}.min_competing_gain + 0.1};
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   ASSERT_TRUE(core::is_loop(verdict));
   EXPECT_EQ(std::get<core::LoopClosure>(verdict).overruled, core::CandidateId(7));
 }
 
-TEST(Decide, WhereALoopHasPutTheCameraElsewhereNobodyCanTell) {
+TEST(Decide, ACompetingLoopFarFromHereIsAmbiguous) {
   core::Evidence evidence = good_evidence();
-  evidence.rival = core::RivalEvidence{
+  evidence.competing_loop = core::CompetingLoopEvidence{
       .frame = core::FrameId(20), .apart_m = 1.8, .apart_rad = 0.01, .mahalanobis_squared = 29.0};
   EXPECT_EQ(stage(evidence, {}), "accepted");
-  evidence.rival->mahalanobis_squared = 31.0;
+  evidence.competing_loop->mahalanobis_squared = 31.0;
   const auto verdict = decide(candidate(100, 0), evidence, {}, {});
   EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
-  EXPECT_EQ(core::stage_of(verdict), "rival");
-  EXPECT_NE(core::reason_of(verdict).find("where frame 20 was taken, 1.80 m"), std::string::npos);
+  EXPECT_EQ(core::stage_of(verdict), "competing");
+  EXPECT_NE(core::reason_of(verdict).find("at frame 20, 1.80 m"), std::string::npos);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace samewhere::verify {
 
 // Counts views by what they show, not by how fast the camera takes pictures: a frame that shares
-// more than a share of its features with the last view counted is still that view. Who stands still
-// sees one view, however long.
+// more than a share of its features with the last view counted is still that view. A camera that
+// stands still sees one view.
 class ViewCounter {
  public:
   // A frame is the same view if at least max_shared of its features match.

@@ -1,8 +1,0 @@
-#pragma once
-
-namespace samewhere::train {
-
-// `samewhere-train pairs ARGUMENT...`; the exit status.
-int train_pairs(int argc, char** argv);
-
-}  // namespace samewhere::train

@@ -1,0 +1,50 @@
+# The parts that a build can leave out with their libraries: a robot needs neither.
+#
+# SAMEWHERE_TWIN=OFF: no Embree. twin:PRESET and `samewhere twin` are refused with one line.
+# SAMEWHERE_DENSE=OFF: no OctoMap. `samewhere dense` is refused with one line.
+# Of a pair of files x.cpp and x_without.cpp one is compiled; tests that need what is left out are
+# left out, too.
+
+# Embree 3.13 or newer, or 4, whichever is there. Packages of Embree 4 do not count as a newer 3,
+# so no version is asked for.
+if(SAMEWHERE_TWIN)
+  find_package(embree QUIET)
+  if(NOT embree_FOUND OR embree_VERSION VERSION_LESS 3.13 OR embree_VERSION VERSION_GREATER_EQUAL 5)
+    message(FATAL_ERROR "Found no Embree of version 3.13 to 4 (found: ${embree_VERSION}), which renders the buildings of twin:PRESET. "
+                        "On Debian and Ubuntu it is the package libembree-dev. -DSAMEWHERE_TWIN=OFF builds without.")
+  endif()
+  set(SAMEWHERE_EMBREE embree)
+endif()
+
+if(SAMEWHERE_DENSE)
+  find_package(octomap 1.9 QUIET)
+  if(NOT octomap_FOUND)
+    message(FATAL_ERROR "Found no OctoMap of version 1.9 or newer, which `samewhere dense` needs. "
+                        "On Debian and Ubuntu it is the package liboctomap-dev. -DSAMEWHERE_DENSE=OFF builds without.")
+  endif()
+  set(SAMEWHERE_OCTOMAP octomap)
+endif()
+
+# samewhere_leave_out_tests(SOURCES): takes the tests of parts that are left out from the list
+# SOURCES, and those of a build without a part (x_without_test.cpp) where the part is there.
+function(samewhere_leave_out_tests SOURCES)
+  set(sources ${${SOURCES}})
+  if(SAMEWHERE_TWIN)
+    list(FILTER sources EXCLUDE REGEX "/twin/[a-z_]*_without_test\\.cpp$")
+  else()
+    set(without ${sources})
+    list(FILTER without INCLUDE REGEX "/twin/[a-z_]*_without_test\\.cpp$")
+    list(FILTER sources EXCLUDE REGEX "/twin/[a-z_]*_test\\.cpp$")
+    list(APPEND sources ${without})
+    list(FILTER sources EXCLUDE REGEX "/(pipeline/(disturbance|relocalisation|relocalization|slam)|run/recognition)_test\\.cpp$")
+    list(FILTER sources EXCLUDE REGEX "^cli/(commands|dense|known_map|ledger|map|twin)_test\\.cpp$")
+    list(FILTER sources EXCLUDE REGEX "^(corridor/corridor|stereo/stereo|threads/threads)_test\\.cpp$")
+    list(FILTER sources EXCLUDE REGEX "^(carried_pixels|shared_surface)_test\\.cpp$")
+  endif()
+  if(SAMEWHERE_DENSE)
+    list(FILTER sources EXCLUDE REGEX "/dense/[a-z_]*_without_test\\.cpp$")
+  else()
+    list(FILTER sources EXCLUDE REGEX "/dense/octree_map_test\\.cpp$|^cli/dense_test\\.cpp$")
+  endif()
+  set(${SOURCES} ${sources} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,85 @@
+#include <utility>
+
+#include <samewhere/verify/loop_verifier.hpp>
+
+namespace samewhere::verify {
+namespace {
+
+// Of the other accepted candidates the one at another place with most inliers.
+std::optional<core::CompetingPlaceEvidence> competing_place_of(
+    const core::LedgerRow& row, const std::vector<core::LedgerRow>& rows, const MapContext& map) {
+  std::optional<core::CompetingPlaceEvidence> best;
+  for (const core::LedgerRow& other : rows) {
+    if (!core::is_loop(other.verdict) || other.candidate.id == row.candidate.id) continue;
+    auto found = map.measure_competing_place(row, other);
+    if (!found) continue;
+    found->num_inliers = core::evidence_of(other.verdict).geometry->num_inliers;
+    if (!best || found->num_inliers > best->num_inliers) best = found;
+  }
+  return best;
+}
+
+// Without the geometry that was measured for a replay alone.
+core::Evidence evidence_for_rank(const core::Verdict& verdict) {
+  core::Evidence evidence = core::evidence_of(verdict);
+  const auto* rejected = std::get_if<core::Rejection>(&verdict);
+  if (rejected != nullptr &&
+      (rejected->stage == core::Refusal::kSimilarity || rejected->stage == core::Refusal::kPause))
+    evidence.geometry.reset();
+  return evidence;
+}
+
+}  // namespace
+
+core::Evidence LoopVerifier::measure(const core::Candidate& candidate, const features::View& query,
+                                     const features::View& match, const MapContext& map,
+                                     const History& history) const {
+  core::Evidence evidence{.similarity = candidate.similarity};
+  if (!config().measure_all && refuse_early(candidate, evidence, history, config()))
+    return evidence;
+  evidence.geometry = measure_geometry(candidate, query, match, map);
+  if (!evidence.geometry->match_from_query) return evidence;
+  evidence.odometry = map.measure_odometry(candidate, *evidence.geometry->match_from_query);
+  if (evidence.odometry)
+    evidence.competing_loop =
+        map.measure_competing_loop(candidate, *evidence.geometry->match_from_query);
+  return evidence;
+}
+
+core::GeometryEvidence LoopVerifier::measure_geometry(const core::Candidate& candidate,
+                                                      const features::View& query,
+                                                      const features::View& match,
+                                                      const MapContext& map) const {
+  MeasureSettings settings = settings_.measure;
+  if (settings_.features_without_depth && !has_depth(query))
+    settings.features = *settings_.features_without_depth;
+  const auto views = map.views_with_landmark_depths(candidate);
+  if (!views) return verify::measure_geometry(candidate, query, match, settings);
+  settings.has_one_scale = false;
+  return verify::measure_geometry(candidate, views->query, views->match, settings);
+}
+
+void LoopVerifier::compare_candidates_of_one_query(const MapContext& map, const History& history,
+                                                   std::vector<core::LedgerRow>& rows) const {
+  const std::vector<core::LedgerRow> verified = rows;  // each by itself
+  for (core::LedgerRow& row : rows) {
+    if (!core::is_loop(row.verdict)) continue;
+    core::Evidence evidence = core::evidence_of(row.verdict);
+    evidence.competing_place = competing_place_of(row, verified, map);
+    if (evidence.competing_place) row.verdict = decide(row.candidate, evidence, history);
+  }
+}
+
+const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
+                                     const Config& config) {
+  const auto rank_of = [&](const core::LedgerRow& row) {
+    return std::pair(core::is_loop(row.verdict), rank(evidence_for_rank(row.verdict), config));
+  };
+  const core::LedgerRow* best = nullptr;
+  for (const core::LedgerRow& row : rows) {
+    if (best == nullptr || rank_of(row) > rank_of(*best)) best = &row;
+  }
+  return best;
+}
+
+}  // namespace samewhere::verify
