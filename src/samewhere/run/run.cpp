@@ -38,8 +38,8 @@ RunOutcome start_outcome(const pipeline::Config& config, const core::SourceInfo&
   return outcome;
 }
 
-// The frames of a source until it ends, breaks, or somebody presses Ctrl-C, with a progress line on
-// stderr. What ended them is in the outcome's record.
+// The frames of a source until its end, an error or Ctrl-C, with a progress line on stderr. The
+// record of the outcome tells which.
 class FrameFeed {
  public:
   // `source` and `outcome` outlive the feed.
