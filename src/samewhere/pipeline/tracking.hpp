@@ -12,10 +12,10 @@
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/messages.hpp>
 #include <samewhere/pipeline/passing_things.hpp>
-#include <samewhere/pipeline/place_finder.hpp>
+#include <samewhere/pipeline/pose_hypotheses.hpp>
 #include <samewhere/scene/local_map.hpp>
 #include <samewhere/scene/map_file.hpp>
-#include <samewhere/track/scale_watch.hpp>
+#include <samewhere/track/scale_drift_detector.hpp>
 #include <samewhere/track/starter.hpp>
 #include <samewhere/track/tracker.hpp>
 

@@ -4,7 +4,7 @@
 #include <samewhere/core/median.hpp>
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/map/mapper.hpp>
-#include <samewhere/pipeline/place_finder.hpp>
+#include <samewhere/pipeline/pose_hypotheses.hpp>
 
 namespace samewhere::pipeline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
-#include <samewhere/track/scale_watch.hpp>
+#include <samewhere/track/scale_drift_detector.hpp>
 
 namespace samewhere::track {
 namespace {

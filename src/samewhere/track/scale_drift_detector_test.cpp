@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <samewhere/track/scale_watch.hpp>
+#include <samewhere/track/scale_drift_detector.hpp>
 
 namespace samewhere::track {
 namespace {

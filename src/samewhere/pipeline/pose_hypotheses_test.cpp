@@ -6,7 +6,7 @@
 #include <samewhere/features/test_world.hpp>
 #include <samewhere/map/mapper.hpp>
 #include <samewhere/map/test_map.hpp>
-#include <samewhere/pipeline/place_finder.hpp>
+#include <samewhere/pipeline/pose_hypotheses.hpp>
 
 namespace samewhere::pipeline {
 namespace {
