@@ -42,10 +42,9 @@ void require_same_describer(const std::filesystem::path& map, const core::Descri
 
 MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan& plan)
     : config_(config), plan_(plan), is_metric_(depth_from == DepthFrom::kSensor) {
-  const SlamHooks hooks{
-      .keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); }};
+  const KeepMap keep_map = [this](const auto& map, const MapNews& news) { keep(map, news); };
   if (plan.known.empty()) {
-    slam_.emplace(config, depth_from, hooks);
+    slam_.emplace(config, depth_from, keep_map);
     return;
   }
   using enum scene::MapAccess;
@@ -57,7 +56,7 @@ MappedSlam::MappedSlam(const Config& config, DepthFrom depth_from, const MapPlan
   is_metric_ = !scene::is_without_depth(stored.map);
   if (!stored.extras.descriptors.empty()) known_view_ = stored.extras.descriptors.front();
   slam_.emplace(config, stored, plan.is_known_fixed ? Slam::Use::kLocalize : Slam::Use::kExtend,
-                hooks);
+                keep_map);
 }
 
 void MappedSlam::feed(core::Frame& frame) {

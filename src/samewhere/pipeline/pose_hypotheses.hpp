@@ -12,109 +12,108 @@
 
 namespace samewhere::pipeline {
 
-// Where a lost view was taken.
-struct FoundPlace {
-  scene::LocalMap around;
-  track::Track track;  // relative to around.reference
+// Pose of a lost view in the map.
+struct RelocalizedPose {
+  scene::LocalMap local_map;
+  track::Track track;  // relative to local_map.reference
 };
 
-// Whether one can have got there since the last pose.
-using IsWithinReach = std::function<bool(const core::FramePose& pose)>;
+// Whether the camera can have reached the pose since its last one.
+using IsReachable = std::function<bool(const core::FramePose& pose)>;
 
-// What must speak for a place. Who looked away for a moment is near where he was: one view is
-// enough, and if reach bounds where he can be, a weak pose will do where no other place was thought
-// of.
-struct Proof {
+// What a hypothesis needs to be accepted. Weak poses are accepted only if there is no other
+// hypothesis.
+struct RequiredEvidence {
   int num_views = 1;
   bool may_be_weak = false;
 };
 
-// Where is somebody who is lost? Every place of the map where the views since then may have been
-// taken is held against every other: each view is tracked among the landmarks of each, and what
-// they explain of the same views is added up. One place is found once it has explained enough
-// views, and no other about as many inliers, or as many of the landmarks that should be in sight
-// there (track.lost.max_rival_ratio). Two places are held against each other in those cells of a
-// view in which the map shows about as much at both; with hardly any, nobody can tell. Until then
-// nobody can tell, either; the places are kept, for whoever walks on learns in the end which of
-// them goes on as the views do. A place that the judge recognised in the view, though nothing can
-// be tracked there or its map shows too little, is another place all the same: while there is one,
-// nobody can tell.
-class PlaceFinder {
+// Competing hypotheses for the pose of a lost camera (decision 017). Each view is tracked in the
+// local map of each hypothesis; inliers and visible landmarks are summed over the last views. A
+// hypothesis is accepted once it has explained enough views and no other competes: none has about
+// as many inliers, or as many inliers per visible landmark (track.lost.max_rival_ratio). Two
+// hypotheses are compared in those cells of the image where the map shows similar numbers of
+// landmarks at both; if these are few, the result is undecided. A place that the loop verifier
+// recognized but where tracking fails also prevents acceptance.
+class PoseHypotheses {
  public:
-  // Both outlive it.
-  PlaceFinder(const Config& config, const track::Tracker& tracker)
-      : config_(config), tracker_(tracker) {}
+  PoseHypotheses(const Config& config, const track::Tracker& tracker)
+      : map_config_(config.map), track_config_(config.track), tracker_(tracker) {}
 
-  // The next view. `places`: where it may have been taken, those of earlier views need not be told
-  // again. Two poses that hardly differ for what is in sight are one place; what is beyond reach is
-  // no place. What is found was recognised and has this proof.
-  std::optional<FoundPlace> look(const features::View& view, const scene::MapVersion& map,
-                                 const std::vector<Place>& places, const Proof& proof,
-                                 const IsWithinReach& is_within_reach);
+  // Adds the evidence of the next view and returns an accepted pose, if any. `candidates`: places
+  // for this view; those of earlier views are kept. Poses that hardly differ at the distance of the
+  // visible landmarks are one hypothesis; poses that are not reachable are none. An accepted
+  // hypothesis was recognized by the loop verifier and has the required evidence.
+  std::optional<RelocalizedPose> evaluate(const features::View& view, const scene::MapVersion& map,
+                                          const std::vector<Place>& candidates,
+                                          const RequiredEvidence& required,
+                                          const IsReachable& is_reachable);
 
-  // Whether some place was thought of too late to have explained `num_views` views yet.
-  bool has_fresh_place(int num_views) const;
+  // Whether a recognized hypothesis has been evaluated on fewer than `num_views` views.
+  bool has_recent(int num_views) const;
 
-  // Nobody is lost any more, or the map is given up.
-  void forget() { hypotheses_.clear(); }
+  // After relocalization, or when the map is discarded.
+  void reset() { hypotheses_.clear(); }
 
  private:
-  // What a place makes of a view, or of a cell of it.
-  struct Evidence {
+  // In a view, or in a cell of it.
+  struct Counts {
     int num_inliers = 0;
-    int num_expected = 0;  // landmarks that should be in sight there
+    int num_visible = 0;  // landmarks that project into it
 
-    Evidence& operator+=(const Evidence& more) {
+    Counts& operator+=(const Counts& more) {
       num_inliers += more.num_inliers;
-      num_expected += more.num_expected;
+      num_visible += more.num_visible;
       return *this;
     }
   };
   static constexpr int kColumns = 8;
   static constexpr int kRows = 6;
-  struct Explained {
-    Evidence all;
-    std::array<Evidence, std::size_t{kColumns} * kRows> cells;  // row by row
-    bool is_testable = false;  // else the map ends where the view looks
+  // Evidence of one view for a hypothesis.
+  struct ViewEvidence {
+    Counts total;
+    std::array<Counts, std::size_t{kColumns} * kRows> cells;  // row by row
+    bool is_comparable = false;  // false: the map ends in the viewing direction
   };
   struct Hypothesis {
-    Place place;                       // as it explained a view last
-    std::vector<Explained> explained;  // of each view since it was thought of, of the last few
-    std::optional<FoundPlace> found;   // of this view
+    Place place;                          // of the last view that was tracked
+    std::vector<ViewEvidence> evidence;   // of the last views, oldest first
+    std::optional<RelocalizedPose> pose;  // of the current view
 
-    int num_inliers() const;  // of the views that may speak
+    int num_inliers() const;  // of comparable views
   };
-  // Near a place, and the best explanation elsewhere in its local map: another place.
-  struct Sight {
-    std::optional<FoundPlace> found;
-    std::optional<FoundPlace> elsewhere;
+  // The best pose near a place, and the best other one in its local map: another hypothesis.
+  struct TrackedPlace {
+    std::optional<RelocalizedPose> near;
+    std::optional<RelocalizedPose> elsewhere;
   };
-
-  struct Question {
+  // Of one call of evaluate().
+  struct Query {
     const features::View& view;
     const scene::MapVersion& map;
-    const IsWithinReach& is_within_reach;
+    const IsReachable& is_reachable;
   };
 
-  Sight look_at(const Place& place, const Question& question) const;
-  // Near the guess and anywhere, whichever explains more: the guess is a view old, and who turns
-  // sees little of what is near it.
-  void track_around(core::KeyframeId keyframe, const Place& place, const Question& question,
-                    Sight& sight) const;
-  void think_of(const Place& place, const Question& question);
-  Explained explained(const Hypothesis& hypothesis, const features::View& view,
-                      const scene::MapVersion& map) const;
-  void record(const features::View& view, const scene::MapVersion& map);
-  void merge(const scene::MapVersion& map);
-  // Whether the judge recognised one of them where no hypothesis is.
-  bool has_unheard(const std::vector<Place>& places, const Question& question) const;
-  // Whether the map shows about as much there at the one as at the other.
-  static bool are_comparable(const Evidence& a, const Evidence& b);
-  bool is_rival(const Hypothesis& other, const Hypothesis& hypothesis) const;
-  bool is_proven(const Hypothesis& hypothesis, const Proof& proof) const;
+  TrackedPlace track_at(const Place& place, const Query& query) const;
+  // With the pose as a guess and without; the one with more inliers is kept. The guess is one view
+  // old, and after a rotation few of its landmarks are visible.
+  void track_in_local_map(core::KeyframeId keyframe, const Place& place, const Query& query,
+                          TrackedPlace& tracked) const;
+  void update(Hypothesis& hypothesis, const Query& query, std::vector<Place>& elsewhere) const;
+  void add(const Place& place, const Query& query);
+  ViewEvidence measure(const Hypothesis& hypothesis, const Query& query) const;
+  void add_evidence(const Query& query);
+  void merge_equal(const scene::MapVersion& map);
+  // Whether the loop verifier recognized a reachable place that is none of the hypotheses.
+  bool has_untracked_recognition(const std::vector<Place>& candidates, const Query& query) const;
+  // Whether the map shows similar numbers of landmarks at both.
+  static bool are_comparable(const Counts& a, const Counts& b);
+  bool is_competing(const Hypothesis& other, const Hypothesis& hypothesis) const;
+  bool is_accepted(const Hypothesis& hypothesis, const RequiredEvidence& required) const;
 
-  const Config& config_;
-  const track::Tracker& tracker_;
+  map::Config map_config_;
+  track::Config track_config_;
+  track::Tracker tracker_;
   std::vector<Hypothesis> hypotheses_;
 };
 

@@ -10,7 +10,7 @@
 
 namespace samewhere::track {
 
-// Of positive values, where half of them lie below: counted in steps of 5 %, in constant memory.
+// Running median of positive values, in bins of 5 %, in constant memory.
 class LogMedian {
  public:
   void add(double value);
@@ -23,47 +23,48 @@ class LogMedian {
   int size_ = 0;
 };
 
-// Notices that the scale of a map without depth has changed. No single view shows it; but then the
-// camera moves, and the landmarks in sight lie, so many times slower and nearer than ever before,
-// and the view flows by as it always did. A camera that stands still, or stands before a wall,
-// shows only one of these. One that is moved slowly close to things for long shows the same as a
-// changed scale: what is found is a suspicion. Lengths are in map units.
-class ScaleWatch {
+// Detects that the scale of a monocular map has drifted. One view does not show it. But both the
+// camera's speed and the depth of the visible landmarks then differ from their usual values by the
+// same factor, while the image flow stays as usual. A standing camera, or one close to a wall,
+// shows only one of the two. A camera that moves slowly and close to objects for long shows both: a
+// detection is a suspicion. Lengths are in map units.
+class ScaleDriftDetector {
  public:
-  // `max_change`: how many times smaller or larger is a change; 1 or less: nothing is noticed.
-  explicit ScaleWatch(double max_change) : max_change_(max_change) {}
+  // `max_change`: larger or smaller by this factor is a drift; 1 or less: nothing is detected.
+  explicit ScaleDriftDetector(double max_change) : max_change_(max_change) {}
 
-  // A frame: how far the camera moved since the frame before, and the median depth of what it sees.
-  // Gives by what factor lengths differ from the usual ones, once that has lasted.
-  std::optional<double> see(double stamp_s, double step, double depth);
-  // Lengths begin anew: another map, or a loop that has changed them.
-  void forget();
+  // One frame: distance to the frame before, and the median depth of its landmarks. Returns the
+  // factor between current and usual lengths once it has lasted for some time.
+  std::optional<double> update(double stamp_s, double step, double depth);
+  // The usual lengths are learned again: another map, or a loop that changed its scale.
+  void reset();
 
  private:
-  struct Seen {
+  struct Sample {
     double stamp_s = 0.0;
     double speed = 0.0;  // per second
     double depth = 0.0;
   };
-  void learn(const Seen& now);
-  std::optional<double> change(const Seen& now) const;
+  void learn(const Sample& now);
+  std::optional<double> change(const Sample& now) const;
 
   double max_change_ = 0.0;
   std::optional<double> last_stamp_s_;
   std::optional<double> changed_since_s_;
-  std::deque<Seen> window_;
+  std::deque<Sample> window_;
   LogMedian usual_speed_;
   LogMedian usual_depth_;
 };
 
-// Frames in a row whose scale is suspected to have changed.
-struct ScaleDoubt {
+// Consecutive frames whose scale is suspected to have drifted.
+struct ScaleDriftInterval {
   core::FrameId first;
   core::FrameId last;
-  double factor = 1.0;  // of lengths, against the usual ones, where it was farthest from 1
+  double factor = 1.0;  // current to usual lengths, the value farthest from 1
 };
 
-// Adds a frame to the last row of them, if it goes on there, or begins another.
-void note_doubt(std::vector<ScaleDoubt>& doubts, core::FrameId frame, double factor);
+// Extends the last interval by a frame that follows it, or adds an interval.
+void add_to_intervals(std::vector<ScaleDriftInterval>& intervals, core::FrameId frame,
+                      double factor);
 
 }  // namespace samewhere::track
