@@ -11,10 +11,10 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/loop_check.hpp>
-#include <samewhere/pipeline/figures.hpp>
-#include <samewhere/pipeline/open_source.hpp>
-#include <samewhere/pipeline/replay.hpp>
-#include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/replay.hpp>
+#include <samewhere/run/run_folder.hpp>
+#include <samewhere/run/run_metrics.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -60,9 +60,9 @@ struct Recorded {
 };
 
 Recorded recorded(const std::string& folder) {
-  const pipeline::Config config = pipeline::config_of_run(folder);
-  const auto source = pipeline::open_source(config);
-  Recorded run{folder, source->truth(), pipeline::ledger_of_run(folder), config.retrieve.window_s};
+  const pipeline::Config config = run::config_of_run(folder);
+  const auto source = run::open_source(config);
+  Recorded run{folder, source->truth(), run::ledger_of_run(folder), config.retrieve.window_s};
   if (!run.truth.places || run.truth.trajectory.empty())
     throw core::InputError(folder + ": its source has no truth of places and poses, expected one");
   return run;
@@ -79,11 +79,11 @@ bool was_seen_before(const core::Truth& truth, int query, double window_s) {
 }
 
 void add(const core::Ledger& ledger, const core::Truth& truth, double window_s, Counts& counts) {
-  pipeline::StampOf stamp_of;
+  run::StampOf stamp_of;
   for (std::size_t i = 0; i < truth.trajectory.size(); ++i)
     stamp_of[core::FrameId(i)] = truth.trajectory[i].stamp_s;
-  pipeline::SlamFindings findings;
-  pipeline::add_loops(ledger, stamp_of, findings);
+  run::SlamFindings findings;
+  run::add_loops(ledger, stamp_of, findings);
   const evaluate::LoopCheck check = evaluate::check_loops(findings.loops, truth);
   counts.num_right += check.num_right;
   counts.num_wrong += check.num_wrong;
@@ -97,9 +97,9 @@ void add(const core::Ledger& ledger, const core::Truth& truth, double window_s, 
 }
 
 core::Ledger judged_anew(const Recorded& run, const std::vector<std::string>& assignments) {
-  const verify::Config config = pipeline::config_of_run(run.folder, assignments).verify;
+  const verify::Config config = run::config_of_run(run.folder, assignments).verify;
   core::Ledger ledger;
-  for (const auto& row : pipeline::replay(run.ledger, config))
+  for (const auto& row : run::replay(run.ledger, config))
     ledger.push_back({row.before.candidate, row.after});
   return ledger;
 }

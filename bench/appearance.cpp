@@ -20,7 +20,7 @@
 #include <samewhere/core/grey.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/run/open_source.hpp>
 #include <samewhere/twin/spec.hpp>
 
 namespace samewhere::bench {
@@ -54,7 +54,7 @@ std::unique_ptr<core::Source> open(const std::string& name) {
   pipeline::Config config = pipeline::profile("default");
   config.source = name;
   config.twin.ideal_depth = true;  // the range of a sensor would shorten the median depth
-  return pipeline::open_source(config);
+  return run::open_source(config);
 }
 
 int smallest_width_px(const std::vector<std::string>& sources) {

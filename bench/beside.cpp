@@ -14,8 +14,8 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/timing.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {

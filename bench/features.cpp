@@ -21,7 +21,7 @@
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/features/orb.hpp>
-#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -41,8 +41,8 @@ struct Options {
 // Grey pictures from all parts of the source, brought to one size.
 std::vector<cv::Mat> pictures_of(const std::string& name, int num_frames) {
   pipeline::Config config = pipeline::profile("default");
-  config.source = pipeline::absolute_source(name);
-  const auto source = pipeline::open_source(config);
+  config.source = run::absolute_source(name);
+  const auto source = run::open_source(config);
   const int step = std::max(1, source->info().num_frames / num_frames);
   std::vector<cv::Mat> pictures;
   for (int i = 0; const auto frame = source->next(); ++i) {

@@ -16,10 +16,10 @@
 #include "program.hpp"
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/timing.hpp>
-#include <samewhere/pipeline/figures.hpp>
-#include <samewhere/pipeline/map_saver.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/run/map_saver.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/run_metrics.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -75,7 +75,7 @@ class Haul {
  public:
   // The map is saved as it grows, if a file is named.
   Haul(const pipeline::Config& config, const std::string& map_file)
-      : source_(pipeline::open_source(config)),
+      : source_(run::open_source(config)),
         slam_(with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
               keep_map()) {
     if (!map_file.empty()) saver_.emplace(map_file, config, slam_.describer_checksum());
@@ -114,17 +114,17 @@ class Haul {
 
   // How good it is, by docs/evaluation.md.
   Table quality() const {
-    pipeline::SlamFindings findings;
+    run::SlamFindings findings;
     findings.num_frames = static_cast<int>(slam_.frames().size());
     findings.trajectory = pipeline::trajectory_of(slam_.map(), slam_.frames());
     findings.odometry = pipeline::odometry_of(slam_.map(), slam_.frames());
-    pipeline::StampOf stamp_of;
+    run::StampOf stamp_of;
     for (const auto& frame : slam_.frames()) stamp_of[frame.frame] = frame.stamp_s;
-    pipeline::add_loops(slam_.ledger(), stamp_of, findings);
+    run::add_loops(slam_.ledger(), stamp_of, findings);
     core::Truth truth;
     truth.trajectory = source_->true_trajectory();  // which places are one is a matrix too large
     Table table{{"figure", "value"}, {}};
-    for (const auto& [name, value] : pipeline::figures_of(evaluate_slam(findings, truth)))
+    for (const auto& [name, value] : run::figures_of(evaluate_slam(findings, truth)))
       table.rows.push_back({name, value});
     table.rows.push_back({"live landmarks", std::to_string(num_live(slam_.map().landmarks))});
     return table;
@@ -176,7 +176,7 @@ class Haul {
                 "in use MiB", "mapped files MiB"},
                {}};
   std::unique_ptr<core::Source> source_;
-  std::optional<pipeline::MapSaver> saver_;  // from the first frame on in mapping's thread
+  std::optional<run::MapSaver> saver_;  // from the first frame on in mapping's thread
   pipeline::Slam slam_;
 };
 

@@ -23,7 +23,7 @@
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/pairs/most_alike.hpp>
 #include <samewhere/pairs/tower.hpp>
-#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -62,7 +62,7 @@ bool is_whole_tower(const std::string& name) {
 SourceViews view(const std::string& name, MobileNet& mobilenet) {
   pipeline::Config config = pipeline::profile("default");
   config.source = is_whole_tower(name) ? (std::filesystem::path(name) / "walk.txt").string() : name;
-  const auto source = pipeline::open_source(config);
+  const auto source = run::open_source(config);
   const auto describer = describe::make_describer(config.describe);
   core::Progress progress("looking at " + name, source->info().num_frames);
   SourceViews views;

@@ -15,9 +15,9 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/pipeline/map_saver.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/run/map_saver.hpp>
+#include <samewhere/run/open_source.hpp>
 #include <samewhere/scene/map_file.hpp>
 
 namespace samewhere::bench {
@@ -56,7 +56,7 @@ scene::StoredMap map_of(const Walk& walk, int num_frames, const pipeline::Config
   for (int i = 0; i < num_frames; ++i) slam.feed(walk.frames[static_cast<std::size_t>(i)]);
   slam.finish();
   const scene::MapHeader header =
-      pipeline::map_header(config, *walk.frames.front().rig, slam.describer_checksum());
+      run::map_header(config, *walk.frames.front().rig, slam.describer_checksum());
   const PassingFile file;
   scene::MapFile::create(file.path, header)
       .commit(slam.map(), {.frames = slam.frames(), .descriptors = slam.descriptors()});

@@ -24,7 +24,7 @@
 #include <samewhere/features/corners.hpp>
 #include <samewhere/features/describe.hpp>
 #include <samewhere/features/pyramid.hpp>
-#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -90,8 +90,8 @@ std::vector<Patch> patches_of(const Options& options) {
   std::vector<Patch> patches;
   for (const std::string& name : options.sources) {
     pipeline::Config config = pipeline::profile("default");
-    config.source = pipeline::absolute_source(name);
-    const auto source = pipeline::open_source(config);
+    config.source = run::absolute_source(name);
+    const auto source = run::open_source(config);
     const int step = std::max(1, source->info().num_frames / options.num_frames);
     for (int i = 0; const auto frame = source->next(); ++i) {
       core::stop_if_interrupted();

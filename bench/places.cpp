@@ -12,8 +12,8 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/precision_recall.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -31,7 +31,7 @@ struct Seen {
 };
 
 Seen seen_by_slam(core::Source& source, const pipeline::Config& config) {
-  pipeline::Slam slam(pipeline::with_window_in_frames(config, source.info()));
+  pipeline::Slam slam(run::with_window_in_frames(config, source.info()));
   core::Progress progress(config.source, source.info().num_frames);
   Seen all;
   for (int i = 0; const auto frame = source.next(); ++i) {
@@ -59,7 +59,7 @@ Seen seen_by_slam(core::Source& source, const pipeline::Config& config) {
 std::vector<std::string> measure(const std::string& name, int window_frames) {
   pipeline::Config config = pipeline::profile("default");
   config.source = name;
-  const auto source = pipeline::open_source_with_truth(config);
+  const auto source = run::open_source_with_truth(config);
   const core::Truth truth = source->truth();
   if (!truth.places)
     throw core::InputError(name + ": the truth says nothing about places, expected a matrix");

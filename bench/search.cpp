@@ -19,10 +19,10 @@
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/describe/describer.hpp>
-#include <samewhere/pipeline/open_source.hpp>
-#include <samewhere/pipeline/view_pool.hpp>
+#include <samewhere/paper/view_pool.hpp>
 #include <samewhere/retrieve/retriever.hpp>
 #include <samewhere/retrieve/search.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -36,13 +36,13 @@ struct Options {
   std::string csv_file;
 };
 
-pipeline::ViewPool pool_of(const Options& options, describe::Describer& describer) {
+paper::ViewPool pool_of(const Options& options, describe::Describer& describer) {
   std::vector<pipeline::Config> configs;
   for (const std::string& name : options.sources) {
     configs.push_back(options.config);
-    configs.back().source = pipeline::absolute_source(name);
+    configs.back().source = run::absolute_source(name);
   }
-  auto pool = pipeline::make_view_pool(
+  auto pool = paper::make_view_pool(
       configs, describer, {.num_stored = options.sizes.back(), .num_queries = options.num_queries});
   if (!pool) throw core::Interrupted();
   return std::move(*pool);
@@ -145,7 +145,7 @@ class SearchBench {
 
   const Options& options_;
   std::unique_ptr<describe::Describer> describer_;
-  pipeline::ViewPool pool_;
+  paper::ViewPool pool_;
   retrieve::SegmentedStore store_;
 };
 

@@ -12,9 +12,9 @@
 #include "program.hpp"
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/pipeline/slam_test_hooks.hpp>
+#include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -82,7 +82,7 @@ pipeline::SlamTestHooks never_lied_to(const Liar& liar, Witness& witness) {
 // Both walk side by side: each sees a frame when the other does. In a control nobody is lied to,
 // and the first is nudged.
 Outcome walk_twice(const pipeline::Config& config, int lie_after, bool is_control) {
-  const auto source = pipeline::open_source(config);
+  const auto source = run::open_source(config);
   const core::Truth truth = source->truth();
   Liar liar(config, lie_after, truth);
   Witness witness(config, liar, truth);

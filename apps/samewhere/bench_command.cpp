@@ -16,12 +16,12 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/terminal.hpp>
-#include <samewhere/pipeline/blind_spot.hpp>
-#include <samewhere/pipeline/described_recording.hpp>
-#include <samewhere/pipeline/paper_curves.hpp>
-#include <samewhere/pipeline/paper_runs.hpp>
-#include <samewhere/pipeline/paper_tables.hpp>
-#include <samewhere/pipeline/view_pool.hpp>
+#include <samewhere/paper/blind_spot.hpp>
+#include <samewhere/paper/curves.hpp>
+#include <samewhere/paper/described_recording.hpp>
+#include <samewhere/paper/runs.hpp>
+#include <samewhere/paper/tables.hpp>
+#include <samewhere/paper/view_pool.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -38,29 +38,29 @@ struct PaperCommand {
 // What a command has measured so far, on the terminal and in its folder.
 class PaperOutput {
  public:
-  PaperOutput(const std::string& folder, pipeline::PaperTableNumbers numbers)
+  PaperOutput(const std::string& folder, paper::PaperTableNumbers numbers)
       : folder_(folder), numbers_(std::move(numbers)) {
     if (!folder.empty()) core::make_writable_folder(folder_);
   }
 
-  void add(const pipeline::PaperBlock& block) {
-    say(pipeline::paper_text(block, numbers_) + "\n");
+  void add(const paper::PaperBlock& block) {
+    say(paper::paper_text(block, numbers_) + "\n");
     blocks_.push_back(block);
-    write("searches.csv", pipeline::searches_csv(blocks_));
-    write("times.csv", pipeline::times_csv(blocks_));
+    write("searches.csv", paper::searches_csv(blocks_));
+    write("times.csv", paper::times_csv(blocks_));
   }
 
   // The blocks of one recording.
-  void add_curves(const std::vector<pipeline::PaperBlock>& blocks) const {
-    const pipeline::PaperBlock& any = blocks.front();
-    write("pr-" + pipeline::file_stem(any.recording, any.window_frames) + ".svg",
-          pipeline::curves_svg(blocks));
+  void add_curves(const std::vector<paper::PaperBlock>& blocks) const {
+    const paper::PaperBlock& any = blocks.front();
+    write("pr-" + paper::file_stem(any.recording, any.window_frames) + ".svg",
+          paper::curves_svg(blocks));
   }
 
-  void add(const std::vector<pipeline::BlindSpotPoint>& points, const retrieve::Config& config) {
-    say(pipeline::blind_spot_sentence(points, config.num_draws) + "\n");
-    write("blind-spot.csv", pipeline::blind_spot_csv(points));
-    write("blind-spot.svg", pipeline::blind_spot_svg(points, config));
+  void add(const std::vector<paper::BlindSpotPoint>& points, const retrieve::Config& config) {
+    say(paper::blind_spot_sentence(points, config.num_draws) + "\n");
+    write("blind-spot.csv", paper::blind_spot_csv(points));
+    write("blind-spot.svg", paper::blind_spot_svg(points, config));
   }
 
  private:
@@ -76,8 +76,8 @@ class PaperOutput {
   }
 
   std::filesystem::path folder_;  // empty: nothing is written
-  pipeline::PaperTableNumbers numbers_;
-  std::vector<pipeline::PaperBlock> blocks_;
+  paper::PaperTableNumbers numbers_;
+  std::vector<paper::PaperBlock> blocks_;
   std::string text_;
 };
 
@@ -85,33 +85,33 @@ std::vector<pipeline::Config> configs_of(const PaperCommand& command,
                                          const pipeline::Config& config) {
   std::vector<pipeline::Config> configs;
   for (const std::string& source : command.sources)
-    configs.push_back(pipeline::with_source(config, source));
+    configs.push_back(paper::with_source(config, source));
   return configs;
 }
 
 // The pool for stores of up to this many views, 0: none is wanted.
-std::optional<pipeline::ViewPoolMaker> pool_maker(
-    int num_views, const std::vector<pipeline::OpenRecording>& recordings,
-    describe::Describer& describer) {
+std::optional<paper::ViewPoolMaker> pool_maker(int num_views,
+                                               const std::vector<paper::OpenRecording>& recordings,
+                                               describe::Describer& describer) {
   constexpr int kNumQueries = 200;
   if (num_views == 0) return std::nullopt;
   int num_frames = 0;
   for (const auto& recording : recordings) num_frames += recording.num_frames;
-  return std::optional<pipeline::ViewPoolMaker>(
+  return std::optional<paper::ViewPoolMaker>(
       std::in_place, describer, num_frames,
-      pipeline::PoolSize{.num_stored = num_views, .num_queries = kNumQueries});
+      paper::PoolSize{.num_stored = num_views, .num_queries = kNumQueries});
 }
 
 // False: interrupted.
-bool measure_tables(pipeline::OpenRecording opened,
-                    const std::vector<pipeline::NamedDescriber>& describers,
-                    const pipeline::SeePicture& also_see, PaperOutput& output) {
+bool measure_tables(paper::OpenRecording opened,
+                    const std::vector<paper::NamedDescriber>& describers,
+                    const paper::SeePicture& also_see, PaperOutput& output) {
   const pipeline::Config config = opened.config;
-  const auto recording = pipeline::describe_recording(std::move(opened), describers, also_see);
+  const auto recording = paper::describe_recording(std::move(opened), describers, also_see);
   if (!recording) return false;
-  std::vector<pipeline::PaperBlock> blocks;
+  std::vector<paper::PaperBlock> blocks;
   for (const auto& views : recording->by_describer) {
-    const auto block = pipeline::run_paper_plan(*recording, views, config, {});
+    const auto block = paper::run_paper_plan(*recording, views, config, {});
     if (!block) return false;
     output.add(*block);
     blocks.push_back(*block);
@@ -121,25 +121,25 @@ bool measure_tables(pipeline::OpenRecording opened,
 }
 
 // False: interrupted.
-bool measure_blind_spot(const pipeline::ViewPool& pool, const retrieve::Config& search,
+bool measure_blind_spot(const paper::ViewPool& pool, const retrieve::Config& search,
                         PaperOutput& output) {
   std::vector<int> num_draws{10, search.num_draws, 70};
   std::sort(num_draws.begin(), num_draws.end());
   num_draws.erase(std::unique(num_draws.begin(), num_draws.end()), num_draws.end());
-  const auto points = pipeline::measure_blind_spot(pool, search, num_draws);
+  const auto points = paper::measure_blind_spot(pool, search, num_draws);
   if (points) output.add(*points, search);
   return points.has_value();
 }
 
 int execute(const PaperCommand& command) {
   core::catch_interrupts();
-  const pipeline::PaperTableNumbers numbers = pipeline::parse_table_numbers(command.tables);
+  const paper::PaperTableNumbers numbers = paper::parse_table_numbers(command.tables);
   const pipeline::Config config = load(command.config);
-  const auto describers = pipeline::make_describers(command.describers, config);
+  const auto describers = paper::make_describers(command.describers, config);
   // all are open, and so known to be of use, before any work is done
-  auto recordings = pipeline::open_recordings(configs_of(command, config));
+  auto recordings = paper::open_recordings(configs_of(command, config));
   auto maker = pool_maker(command.blind_spot_views, recordings, *describers.front().describer);
-  const pipeline::SeePicture to_pool = [&](const cv::Mat& picture) {
+  const paper::SeePicture to_pool = [&](const cv::Mat& picture) {
     if (maker) maker->add(picture);
   };
   PaperOutput output(command.out, numbers);
@@ -148,7 +148,7 @@ int execute(const PaperCommand& command) {
       return core::kInterruptedExit;
   }
   if (!maker) return core::kDone;
-  const pipeline::ViewPool pool = std::move(*maker).pool();
+  const paper::ViewPool pool = std::move(*maker).pool();
   return measure_blind_spot(pool, config.retrieve, output) ? core::kDone : core::kInterruptedExit;
 }
 

@@ -11,24 +11,24 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/folder_lock.hpp>
 #include <samewhere/core/interrupt.hpp>
-#include <samewhere/pipeline/dense_maps.hpp>
-#include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/run/dense_maps.hpp>
+#include <samewhere/run/run_folder.hpp>
 
 namespace samewhere::app {
 namespace {
 
 struct DenseCommand {
   std::string run;
-  pipeline::DenseFiles files;
+  run::DenseFiles files;
   std::vector<std::string> assignments;
 };
 
 void execute(const DenseCommand& command) {
   core::catch_interrupts();
   const std::filesystem::path run = command.run;
-  pipeline::Config config = pipeline::config_of_run(run);
+  pipeline::Config config = run::config_of_run(run);
   for (const auto& assignment : command.assignments) core::set_config(config, assignment);
-  pipeline::DenseFiles files = command.files;
+  run::DenseFiles files = command.files;
   const bool asks_for_grid = !files.grid.empty();
   std::optional<core::FolderLock> lock;  // no run may replace what is there meanwhile
   if (files.cloud.empty() && files.grid.empty() && files.octree.empty()) {
@@ -37,8 +37,8 @@ void execute(const DenseCommand& command) {
     for (const char* name : {"cloud.ply", "map.pgm", "map.yaml", "map.bt"})
       core::remove_partial_files(run / name);
   }
-  const pipeline::DenseOutcome outcome =
-      pipeline::make_dense_maps(run, config, files, lock ? &*lock : nullptr);
+  const run::DenseOutcome outcome =
+      run::make_dense_maps(run, config, files, lock ? &*lock : nullptr);
   print_figures(outcome.figures);
   if (outcome.no_grid && asks_for_grid)
     throw core::InputError(run.string() + ": " + *outcome.no_grid);

@@ -7,7 +7,7 @@
 #include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/terminal.hpp>
-#include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/run/run_folder.hpp>
 
 namespace samewhere::app {
 
@@ -53,12 +53,12 @@ void add_eval_command(CLI::App& app) {
       "  samewhere eval runs/twin-corridors --stages");
   sub->callback([command] {
     if (command->stages) {
-      core::print("{}", report::as_text(pipeline::stages_of_folder(command->folder)));
+      core::print("{}", report::as_text(run::stages_of_folder(command->folder)));
       return;
     }
     const auto figures = command->walk.empty()
-                             ? pipeline::evaluate_folder(command->folder, command->truth)
-                             : pipeline::evaluate_walk(command->folder, command->walk);
+                             ? run::evaluate_folder(command->folder, command->truth)
+                             : run::evaluate_walk(command->folder, command->walk);
     if (command->figures.is_for_person()) print_figures(figures);
     write_json(command->folder, figures, command->figures);
   });

@@ -15,13 +15,13 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/printable.hpp>
 #include <samewhere/core/terminal.hpp>
-#include <samewhere/pipeline/by_hand.hpp>
-#include <samewhere/pipeline/replay.hpp>
-#include <samewhere/pipeline/run_folder.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/pair_figure.hpp>
 #include <samewhere/report/table.hpp>
+#include <samewhere/run/override.hpp>
+#include <samewhere/run/replay.hpp>
+#include <samewhere/run/run_folder.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -67,21 +67,21 @@ std::string lines_of(const core::Ledger& rows) {
 
 void list(const LedgerCommand& command) {
   core::Ledger wanted;
-  for (const core::LedgerRow& row : pipeline::ledger_of_run(command.folder))
+  for (const core::LedgerRow& row : run::ledger_of_run(command.folder))
     if (is_wanted(row, command)) wanted.push_back(row);
   core::print("{}", lines_of(wanted));
 }
 
 void show(const LedgerCommand& command) {
-  const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
-  const core::LedgerRow& row = pipeline::row_of(ledger, command.candidate, command.folder);
-  print_figures(figures_of(row, pipeline::config_of_run(command.folder).verify));
+  const core::Ledger ledger = run::ledger_of_run(command.folder);
+  const core::LedgerRow& row = run::row_of(ledger, command.candidate, command.folder);
+  print_figures(figures_of(row, run::config_of_run(command.folder).verify));
   if (command.picture.empty()) return;
-  core::write_file(command.picture, report::pair_svg(pipeline::pair_of_run(command.folder, row)));
+  core::write_file(command.picture, report::pair_svg(run::pair_of_run(command.folder, row)));
   core::print("{}\n", command.picture);
 }
 
-core::Ledger rows_after(const std::vector<pipeline::ReplayedRow>& replayed) {
+core::Ledger rows_after(const std::vector<run::ReplayedRow>& replayed) {
   core::Ledger ledger;
   for (const auto& row : replayed) ledger.push_back({row.before.candidate, row.after});
   return ledger;
@@ -92,27 +92,26 @@ void replay(const LedgerCommand& command) {
     if (!assignment.starts_with("verify."))
       throw core::InputError("--set " + assignment +
                              ": a replay has thresholds alone; expected verify.NAME=VALUE");
-  const core::Ledger ledger = pipeline::ledger_of_run(command.folder);
-  const verify::Config config = pipeline::config_of_run(command.folder, command.assignments).verify;
-  const auto replayed = pipeline::replay(ledger, config);
+  const core::Ledger ledger = run::ledger_of_run(command.folder);
+  const verify::Config config = run::config_of_run(command.folder, command.assignments).verify;
+  const auto replayed = run::replay(ledger, config);
   core::Ledger changed;
   for (const auto& row : replayed)
-    if (row.outcome == pipeline::Replay::kChanged)
-      changed.push_back({row.before.candidate, row.after});
-  const auto count = [&](pipeline::Replay outcome) {
+    if (row.outcome == run::Replay::kChanged) changed.push_back({row.before.candidate, row.after});
+  const auto count = [&](run::Replay outcome) {
     return std::to_string(std::count_if(replayed.begin(), replayed.end(),
                                         [&](const auto& row) { return row.outcome == outcome; }));
   };
   print_figures({{"candidates", std::to_string(replayed.size())},
-                 {"as before", count(pipeline::Replay::kSame)},
-                 {"judged otherwise", count(pipeline::Replay::kChanged)},
-                 {"unmeasured", count(pipeline::Replay::kUnmeasured)},
-                 {"refused by the graph of loops, not replayed", count(pipeline::Replay::kGraph)}});
+                 {"as before", count(run::Replay::kSame)},
+                 {"judged otherwise", count(run::Replay::kChanged)},
+                 {"unmeasured", count(run::Replay::kUnmeasured)},
+                 {"refused by the graph of loops, not replayed", count(run::Replay::kGraph)}});
   core::print("\n{}", report::funnel_text(report::funnel(rows_after(replayed))));
   if (!changed.empty()) core::print("\nJudged otherwise:\n{}", lines_of(changed));
 }
 
-void change(const LedgerCommand& command, pipeline::Word word) {
+void change(const LedgerCommand& command, run::Override override_as) {
   constexpr const char* kSections[] = {"optimize.", "map.", "verify."};
   for (const auto& assignment : command.assignments)
     if (std::none_of(std::begin(kSections), std::end(kSections),
@@ -122,7 +121,7 @@ void change(const LedgerCommand& command, pipeline::Word word) {
           ": expected a setting of optimize, map or verify; the others belong to "
           "what the run has seen");
   const auto changed =
-      pipeline::change_run(command.folder, command.candidate, word, command.assignments);
+      run::override_run(command.folder, command.candidate, override_as, command.assignments);
   core::print("{}", lines_of(changed.rows));
   print_figures(
       {{"loops", fmt::format("{} (before: {})", changed.num_loops, changed.num_loops_before)},
@@ -167,11 +166,11 @@ void add_replay(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command)
 }
 
 void add_change(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command,
-                pipeline::Word word, const char* name, const char* help) {
+                run::Override override_as, const char* name, const char* help) {
   CLI::App* sub = ledger.add_subcommand(name, help);
   sub->add_option("N", command->candidate, "its number, as `list` prints it")->required();
   sub->add_option("--set", command->assignments, "SECTION.NAME=VALUE, on top of the run's config");
-  sub->callback([command, word] { change(*command, word); });
+  sub->callback([command, override_as] { change(*command, override_as); });
 }
 
 }  // namespace
@@ -188,9 +187,9 @@ void add_ledger_command(CLI::App& app) {
   add_list(*sub, command);
   add_show(*sub, command);
   add_replay(*sub, command);
-  add_change(*sub, command, pipeline::Word::kReject, "reject",
+  add_change(*sub, command, run::Override::kReject, "reject",
              "Take an accepted loop back with all that it caused: the map is corrected");
-  add_change(*sub, command, pipeline::Word::kForce, "force",
+  add_change(*sub, command, run::Override::kForce, "force",
              "Close a loop that the judge refused, if odometry and the other loops bear it");
   sub->footer(
       "Examples:\n"

@@ -5,7 +5,7 @@
 #include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
-#include <samewhere/pipeline/map_export.hpp>
+#include <samewhere/run/map_export.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -23,7 +23,7 @@ void add_info(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
   map.add_subcommand("info", "What is in the map, and the settings it was made with")
       ->callback([command] {
         scene::MapFile file = scene::MapFile::open(command->file);
-        print_figures(pipeline::figures_of_map(file.header(), file.load()));
+        print_figures(run::figures_of_map(file.header(), file.load()));
       });
 }
 
@@ -38,9 +38,8 @@ void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
                   "needed where there are several")
       ->check(CLI::Range(0, 1'000'000));
   sub->callback([command] {
-    pipeline::export_map(
-        scene::MapFile::open(command->file).load(),
-        {command->ply, command->tum, command->kitti, command->g2o, command->session});
+    run::export_map(scene::MapFile::open(command->file).load(),
+                    {command->ply, command->tum, command->kitti, command->g2o, command->session});
   });
 }
 

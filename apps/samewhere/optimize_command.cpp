@@ -4,7 +4,7 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include "print.hpp"
-#include <samewhere/pipeline/graph_file.hpp>
+#include <samewhere/run/graph_file.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -31,8 +31,8 @@ void add_optimize_command(CLI::App& app) {
   sub->add_option("--loops", command->loops, "every loop and whether it was believed, CSV");
   sub->add_option("--svg", command->svg, "a picture of the graph before and after");
   sub->callback([command] {
-    print_figures(pipeline::optimize_graph(command->file, load(command->config).optimize,
-                                           {command->out, command->loops, command->svg}));
+    print_figures(run::optimize_graph(command->file, load(command->config).optimize,
+                                      {command->out, command->loops, command->svg}));
   });
   sub->footer(
       "The first edge from a number to the next one that the file has is odometry and is believed; "

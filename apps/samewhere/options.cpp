@@ -4,7 +4,7 @@
 
 #include <samewhere/core/nearest_word.hpp>
 #include <samewhere/core/text_file.hpp>
-#include <samewhere/pipeline/run_folder.hpp>
+#include <samewhere/run/run_folder.hpp>
 
 namespace samewhere::app {
 
@@ -27,11 +27,9 @@ pipeline::Config load(const ConfigOptions& options) {
   return pipeline::load_config(options.profile, options.file, options.assignments);
 }
 
-std::string as_run_folder(const std::string& path) {
-  return pipeline::run_folder_of(path).string();
-}
+std::string as_run_folder(const std::string& path) { return run::run_folder_of(path).string(); }
 
-std::string as_map_file(const std::string& path) { return pipeline::map_file_of(path).string(); }
+std::string as_map_file(const std::string& path) { return run::map_file_of(path).string(); }
 
 void refuse_empty_values(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {

@@ -20,12 +20,12 @@
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/input/camera_file.hpp>
-#include <samewhere/pipeline/open_source.hpp>
-#include <samewhere/pipeline/run.hpp>
-#include <samewhere/pipeline/self_calibration.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/results_folder.hpp>
 #include <samewhere/report/write.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/run.hpp>
+#include <samewhere/run/self_calibration.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -47,10 +47,8 @@ struct RunCommand {
 
 // A folder name that tells where the run came from: the last part of a path, the preset of a twin.
 std::string short_name(const std::string& source) {
-  std::string name = std::filesystem::path(pipeline::absolute_source(source) + "/")
-                         .parent_path()
-                         .filename()
-                         .string();
+  std::string name =
+      std::filesystem::path(run::absolute_source(source) + "/").parent_path().filename().string();
   if (name.starts_with("twin:")) name = name.substr(5, name.find('?') - 5);
   for (char& c : name) {
     const bool is_plain =
@@ -69,7 +67,7 @@ report::ResultsPlace place_for_results(const RunCommand& command, const std::str
 }
 
 // What could not be written and why, a line for each.
-std::vector<std::string> write(const pipeline::RunOutcome& outcome, Work work,
+std::vector<std::string> write(const run::RunOutcome& outcome, Work work,
                                const std::filesystem::path& folder) {
   return work == Work::kSlam
              ? report::write_run(outcome.record, folder)
@@ -92,7 +90,7 @@ void print_times_with_reading(const core::Timings& timings, double processor_ms)
       processor_ms / summary.count);
 }
 
-void print_outcome(const pipeline::RunOutcome& outcome, const std::filesystem::path& folder) {
+void print_outcome(const run::RunOutcome& outcome, const std::filesystem::path& folder) {
   const report::RunRecord& record = outcome.record;
   core::print("{}\n", record.title);
   print_figures(record.figures);
@@ -134,7 +132,7 @@ void require_realtime_as_told(const std::string& source, const core::SourceInfo&
 // Where the camera was estimated, the run's folder says what it was: for later runs, and for
 // commands that open the recording again.
 pipeline::Config with_estimated_camera(pipeline::Config config,
-                                       const std::optional<pipeline::SelfCalibration>& calibration,
+                                       const std::optional<run::SelfCalibration>& calibration,
                                        const std::filesystem::path& folder) {
   if (calibration) config.input.camera = std::filesystem::absolute(folder / "camera.txt").string();
   return config;
@@ -142,20 +140,19 @@ pipeline::Config with_estimated_camera(pipeline::Config config,
 
 pipeline::Config config_of(const RunCommand& command, Work work) {
   pipeline::Config config = load(command.config);
-  config.source = pipeline::absolute_source(command.source);
+  config.source = run::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
   config.input.needs_calibration = work == Work::kSlam;
   if (!command.camera.empty()) config.input.camera = command.camera;
   if (command.fov_deg > 0.0) config.input.fov_deg = command.fov_deg;
-  if (!config.input.camera.empty())
-    config.input.camera = pipeline::absolute_source(config.input.camera);
+  if (!config.input.camera.empty()) config.input.camera = run::absolute_source(config.input.camera);
   return config;
 }
 
 // At the first good frame. Before, Ctrl-C ends the process at once: there is nothing to finish.
 // Settings that find no room are no reason to see nothing: the results are tried, too.
 std::filesystem::path begin_results(report::ResultsFolder& results, const pipeline::Config& config,
-                                    const std::optional<pipeline::SelfCalibration>& calibration) {
+                                    const std::optional<run::SelfCalibration>& calibration) {
   core::catch_interrupts();
   results.begin();
   try {
@@ -170,16 +167,15 @@ std::filesystem::path begin_results(report::ResultsFolder& results, const pipeli
   return results.path() / "map.sw";
 }
 
-pipeline::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunCommand& command,
-                             const pipeline::Config& config, Work work,
-                             const std::function<std::filesystem::path()>& begin) {
+run::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunCommand& command,
+                        const pipeline::Config& config, Work work,
+                        const std::function<std::filesystem::path()>& begin) {
   if (work == Work::kRecognition)
-    return pipeline::run_recognition(
+    return run::run_recognition(
         std::move(source), config, [&] { begin(); }, command.figures.is_quiet);
-  return pipeline::run_slam(
-      std::move(source), config,
-      {.known = command.map, .is_known_fixed = command.localize, .begin = begin},
-      command.figures.is_quiet);
+  return run::run_slam(std::move(source), config,
+                       {.known = command.map, .is_known_fixed = command.localize, .begin = begin},
+                       command.figures.is_quiet);
 }
 
 // Each on a line of stderr. Returns the exit code.
@@ -192,18 +188,17 @@ int report_errors(const std::vector<std::string>& errors, bool is_interrupted) {
 int execute(const RunCommand& command, Work work) {
   const pipeline::Config config = config_of(command, work);
   report::ResultsFolder results(place_for_results(command, config.source));
-  auto source = pipeline::open_source(config);
+  auto source = run::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
-  std::optional<pipeline::SelfCalibration> calibration;
+  std::optional<run::SelfCalibration> calibration;
   if (work == Work::kSlam) {
-    calibration = pipeline::calibrate_if_unknown(source, config);
-    pipeline::require_slam_input(source->info(), config);
+    calibration = run::calibrate_if_unknown(source, config);
+    run::require_slam_input(source->info(), config);
   }
-  pipeline::RunOutcome outcome = work_on(std::move(source), command, config, work, [&] {
-    return begin_results(results, config, calibration);
-  });
+  run::RunOutcome outcome = work_on(std::move(source), command, config, work,
+                                    [&] { return begin_results(results, config, calibration); });
   report::RunRecord& record = outcome.record;
-  if (calibration) record.figures.push_back(pipeline::focal_length_figure(*calibration));
+  if (calibration) record.figures.push_back(run::focal_length_figure(*calibration));
   std::vector<std::string> errors;
   if (results.has_begun()) {
     record.config_yaml =

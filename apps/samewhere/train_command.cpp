@@ -14,7 +14,7 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/terminal.hpp>
-#include <samewhere/pipeline/word_training.hpp>
+#include <samewhere/run/vocabulary_training.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -36,14 +36,14 @@ namespace {
 }
 
 struct WordsCommand {
-  pipeline::WordTraining training;
+  run::VocabularyTraining training;
   std::string out = "words.bin";
   ConfigOptions config;
 };
 
 void train_words(const WordsCommand& command) {
   core::catch_interrupts();
-  pipeline::WordTraining training = command.training;
+  run::VocabularyTraining training = command.training;
   training.out = command.out;
   if (training.out.extension() == ".json") {
     throw core::InputError("--out = " + command.out +
@@ -56,7 +56,7 @@ void train_words(const WordsCommand& command) {
                                   training.grow.branching, training.grow.depth, command.out);
   for (const std::string& assignment : command.config.assignments)
     training.command += " --set " + assignment;
-  const pipeline::TrainedWords trained = pipeline::train_words(training, load(command.config));
+  const run::TrainedVocabulary trained = run::train_vocabulary(training, load(command.config));
   core::print("{} words of {} features in {} pictures: {}\n", trained.num_words,
               trained.num_features, trained.num_pictures, command.out);
 }
@@ -66,7 +66,7 @@ void add_words_command(CLI::App& train) {
   CLI::App* sub = train.add_subcommand(
       "words", "Grow the vocabulary of ORB features by which similar views are found");
   sub->set_help_flag("-h,--help", "Print this help message and exit");
-  pipeline::WordTraining& training = command->training;
+  run::VocabularyTraining& training = command->training;
   sub->add_option("SOURCE", training.sources, "recordings, folders or lists of images, twin:PRESET")
       ->required();
   sub->add_option("--out", command->out, "file to write; its card is written beside it")

@@ -12,8 +12,8 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/terminal.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/report/jpeg.hpp>
+#include <samewhere/run/open_source.hpp>
 #include <samewhere/twin/contact_sheet.hpp>
 #include <samewhere/twin/dataset.hpp>
 #include <samewhere/twin/twin.hpp>
@@ -116,7 +116,7 @@ void write(const TwinCommand& command) {
   check(command);
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
-  config.source = pipeline::absolute_source(command.source);
+  config.source = run::absolute_source(command.source);
   if (twin::is_twin_spec(config.source)) {
     write_walk(command, config);
     return;
@@ -124,7 +124,7 @@ void write(const TwinCommand& command) {
   if (has_sheet(command)) {
     throw core::InputError(command.source + ": a sheet shows rendered buildings, twin:PRESET");
   }
-  const auto source = pipeline::open_source(config);
+  const auto source = run::open_source(config);
   write_folder(command, *source, nullptr);
   core::print("{}: {} frames of {}\n", command.out, source->info().num_frames, command.source);
 }

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 #include <opencv2/core/utility.hpp>
 
-#include <samewhere/pipeline/figures.hpp>
-#include <samewhere/pipeline/open_source.hpp>
-#include <samewhere/pipeline/run.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/run.hpp>
+#include <samewhere/run/run_metrics.hpp>
 
 namespace samewhere {
 namespace {
@@ -18,10 +18,10 @@ TEST(Corridor, ALookalikeDoorIsNeverMistakenForAnotherAndTheTrueReturnTakesTheDr
   cv::setNumThreads(1);
   pipeline::Config config;
   config.source = "twin:office-loop?seed=1";
-  auto source = pipeline::open_source(config);
+  auto source = run::open_source(config);
   const core::Truth truth = source->truth();
-  const report::RunRecord record = pipeline::run_slam(std::move(source), config).record;
-  const auto evaluation = pipeline::evaluate_slam(pipeline::findings_of(record, false), truth);
+  const report::RunRecord record = run::run_slam(std::move(source), config).record;
+  const auto evaluation = run::evaluate_slam(run::findings_of(record, false), truth);
 
   EXPECT_EQ(evaluation.num_measured, evaluation.num_frames);
   EXPECT_EQ(evaluation.loops.num_wrong, 0);

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 #include <opencv2/core/utility.hpp>
 
-#include <samewhere/pipeline/figures.hpp>
-#include <samewhere/pipeline/open_source.hpp>
-#include <samewhere/pipeline/run.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/run.hpp>
+#include <samewhere/run/run_metrics.hpp>
 
 namespace samewhere {
 namespace {
@@ -30,12 +30,12 @@ class Golden : public testing::Test {
     return config;
   }
 
-  pipeline::SlamEvaluation slam(const std::string& name) const {
+  run::SlamEvaluation slam(const std::string& name) const {
     const pipeline::Config config = config_of(name);
-    auto source = pipeline::open_source(config);
+    auto source = run::open_source(config);
     const core::Truth truth = source->truth();
-    return pipeline::evaluate_slam(
-        pipeline::findings_of(pipeline::run_slam(std::move(source), config).record, false), truth);
+    return run::evaluate_slam(
+        run::findings_of(run::run_slam(std::move(source), config).record, false), truth);
   }
 
   // Recognition by HOG and exact search alone, without geometry.
@@ -44,11 +44,10 @@ class Golden : public testing::Test {
         config_of(name, {"verify.rank_by=similarity", "verify.require_geometry=false",
                          "verify.min_similarity=1",
                          "retrieve.window_frames=" + std::to_string(window_frames)});
-    auto source = pipeline::open_source(config);
+    auto source = run::open_source(config);
     const core::Truth truth = source->truth();
-    const pipeline::RunOutcome outcome = pipeline::run_recognition(std::move(source), config);
-    return *pipeline::evaluate_recognition({0, outcome.matches, outcome.accepted, window_frames},
-                                           truth)
+    const run::RunOutcome outcome = run::run_recognition(std::move(source), config);
+    return *run::evaluate_recognition({0, outcome.matches, outcome.accepted, window_frames}, truth)
                 .curve;
   }
 
@@ -84,11 +83,11 @@ TEST_F(Golden, AlmostPureRotationIsTrackedToTheEnd) {
 TEST_F(Golden, TheSecondLapThroughTheCorridorIsFoundFromPicturesAlone) {
   const pipeline::Config config =
       config_of("rtabmap_corridor", {"retrieve.window_frames=19"}, "recognition");
-  auto source = pipeline::open_source(config);
+  auto source = run::open_source(config);
   const core::Truth truth = source->truth();
-  const pipeline::RunOutcome outcome = pipeline::run_recognition(std::move(source), config);
+  const run::RunOutcome outcome = run::run_recognition(std::move(source), config);
   const auto found =
-      *pipeline::evaluate_recognition({0, outcome.matches, outcome.accepted, 19}, truth).accepted;
+      *run::evaluate_recognition({0, outcome.matches, outcome.accepted, 19}, truth).accepted;
   EXPECT_GE(found.num_right, 42);
   EXPECT_EQ(found.num_wrong, 0);
 }

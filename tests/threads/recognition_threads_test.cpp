@@ -13,8 +13,8 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
-#include <samewhere/pipeline/recognition.hpp>
 #include <samewhere/report/loops.hpp>
+#include <samewhere/run/recognition.hpp>
 
 namespace samewhere::pipeline {
 namespace {

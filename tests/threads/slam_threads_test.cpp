@@ -17,10 +17,10 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/tum_file.hpp>
-#include <samewhere/pipeline/map_saver.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/pipeline/slam_test_hooks.hpp>
 #include <samewhere/report/loops.hpp>
+#include <samewhere/run/map_saver.hpp>
 
 namespace samewhere::pipeline {
 namespace {

@@ -46,7 +46,7 @@ constexpr int kMinKnown = 75;  // landmarks: by so many a pose is sure
 // Whether the map has known what the view shows for so long that one more keyframe says nothing
 // new: of the landmarks that it shows most, and enough, were seen by two keyframes, one of them
 // before that. Stamps of an earlier session do not compare: it counts as the begin of this one.
-bool is_long_known(const scene::MapVersion& map, const TrackedView& tracked) {
+bool is_long_known(const scene::MapVersion& map, const scene::TrackedView& tracked) {
   const std::uint16_t session = tracked.view.frame.session();
   const auto session_begin_s = first_stamp_s(map, session);
   const double latest_s = tracked.view.stamp_s - kKnownAfter_s;
@@ -136,7 +136,7 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
   return build_local_map(map, reference, {config.max_neighbours, config.near_neighbours});
 }
 
-double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked) {
+double median_landmark_depth(const scene::MapVersion& map, const scene::TrackedView& tracked) {
   const core::Rigid3 camera_from_world =
       inverse(world_from_frame(map, tracked.pose) * tracked.view.rig->body_from_camera[0]);
   std::vector<double> depths;
@@ -145,7 +145,7 @@ double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tr
   return core::median(std::move(depths)).value_or(0.0);
 }
 
-bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
+bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked,
                       const Config& config) {
   if (!can_keep(map, tracked.view, config)) return false;
   const bool has_depth = !is_without_depth(map);
@@ -204,7 +204,7 @@ scene::Edit give_up(const scene::MapVersion& map) {
   return edit;
 }
 
-scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked) {
+scene::Edit add_keyframe(const scene::MapVersion& map, const scene::TrackedView& tracked) {
   const core::FramePose& pose = tracked.pose;
   scene::Keyframe keyframe = next_keyframe(map, tracked.view, world_from_frame(map, pose));
   // a reference that was culled since then hangs on another: the edge goes there

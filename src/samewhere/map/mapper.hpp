@@ -3,21 +3,12 @@
 #include <optional>
 #include <vector>
 
-#include <samewhere/core/frame_pose.hpp>
 #include <samewhere/features/match_pair.hpp>
 #include <samewhere/map/config.hpp>
 #include <samewhere/scene/local_map.hpp>
+#include <samewhere/scene/tracked_view.hpp>
 
 namespace samewhere::map {
-
-// A view with a pose, and which of its features show which landmarks of the map.
-struct TrackedView {
-  features::View view;
-  core::FramePose pose;
-  std::vector<std::pair<int, core::LandmarkId>> landmarks;  // feature, landmark
-  // features of what moves, or may: their own depth makes them no landmarks
-  std::vector<int> passing;
-};
 
 // Two views without depth, how they stand to each other, and the points that both see.
 struct ViewPair {
@@ -45,11 +36,11 @@ scene::LocalMap local_map(const scene::MapVersion& map, core::KeyframeId referen
 
 // Median depth of the landmarks that the view shows, along its optical axis, map units; 0: it shows
 // none.
-double median_landmark_depth(const scene::MapVersion& map, const TrackedView& tracked);
+double median_landmark_depth(const scene::MapVersion& map, const scene::TrackedView& tracked);
 
 // Whether the view shows enough new to be kept: moved or turned far from its reference keyframe, or
 // lost sight of it; and keyframes of two minutes ago do not see most of what it shows.
-bool is_worth_keeping(const scene::MapVersion& map, const TrackedView& tracked,
+bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked,
                       const Config& config);
 
 // The edit that makes the view the next keyframe. Without a pose it is the first of its session and
@@ -62,6 +53,6 @@ scene::Edit start_map(const scene::MapVersion& map, const ViewPair& pair);
 // The edit after which the map shows nothing: every landmark is culled. The keyframes stay, as
 // pictures of the past.
 scene::Edit give_up(const scene::MapVersion& map);
-scene::Edit add_keyframe(const scene::MapVersion& map, const TrackedView& tracked);
+scene::Edit add_keyframe(const scene::MapVersion& map, const scene::TrackedView& tracked);
 
 }  // namespace samewhere::map

@@ -13,8 +13,8 @@ class TestMapper : public testing::Test {
 
   // The view from `reference_from_frame`, every feature of which shows the landmark of the same
   // point if the first view has it.
-  TrackedView tracked_at(const core::Rigid3& reference_from_frame) const {
-    TrackedView tracked{features::test_view(world_, 1, reference_from_frame), {}, {}};
+  scene::TrackedView tracked_at(const core::Rigid3& reference_from_frame) const {
+    scene::TrackedView tracked{features::test_view(world_, 1, reference_from_frame), {}, {}};
     tracked.pose.reference_keyframe = core::KeyframeId(0);
     tracked.pose.reference_from_frame = reference_from_frame;
     for (const auto& match : features::match_pair(first_.features->descriptors,
@@ -54,7 +54,7 @@ TEST_F(TestMapper, MovingTurningAndLosingSightEachAddOne) {
       is_worth_keeping(map_, tracked_at({Eigen::Quaterniond::Identity(), {0.8, 0, 0}}), config_));
   EXPECT_TRUE(
       is_worth_keeping(map_, tracked_at({core::exp_so3({0.0, 0.3, 0.0}), {0, 0, 0}}), config_));
-  TrackedView blind = tracked_at({});
+  scene::TrackedView blind = tracked_at({});
   blind.landmarks.resize(blind.landmarks.size() / 3);
   EXPECT_TRUE(is_worth_keeping(map_, blind, config_));
 }
@@ -64,8 +64,8 @@ class ALongStay : public TestMapper {
  protected:
   ALongStay() { map_ = apply(map_, add_keyframe(map_, tracked_at({}))); }
 
-  TrackedView tracked_after(double seconds) const {
-    TrackedView tracked = tracked_at({Eigen::Quaterniond::Identity(), {0.8, 0, 0}});
+  scene::TrackedView tracked_after(double seconds) const {
+    scene::TrackedView tracked = tracked_at({Eigen::Quaterniond::Identity(), {0.8, 0, 0}});
     tracked.view.stamp_s = first_.stamp_s + seconds;
     return tracked;
   }
@@ -96,7 +96,7 @@ TEST_F(ALongStay, AddsAKeyframeOfWhatOnlyYoungKeyframesHaveSeen) {
 }
 
 TEST_F(ALongStay, AddsAKeyframeWhereMostOfWhatIsShownIsNewOrLittleIsKnown) {
-  TrackedView tracked = tracked_after(180.0);
+  scene::TrackedView tracked = tracked_after(180.0);
   const auto all = tracked.landmarks;
   scene::MapVersion once = map_;
   for (std::size_t i = 0; 5 * i < 3 * all.size(); ++i)
@@ -109,7 +109,7 @@ TEST_F(ALongStay, AddsAKeyframeWhereMostOfWhatIsShownIsNewOrLittleIsKnown) {
 
 TEST_F(ALongStay, CountsFromTheBeginOfTheSessionForWhatAnEarlierOneSaw) {
   put_into_session(1, 1000.0);
-  TrackedView tracked = tracked_after(1060.0);
+  scene::TrackedView tracked = tracked_after(1060.0);
   tracked.view.frame = core::FrameId(1, 1);
   EXPECT_TRUE(is_worth_keeping(map_, tracked, config_));
   tracked.view.stamp_s = first_.stamp_s + 1180.0;
@@ -117,7 +117,7 @@ TEST_F(ALongStay, CountsFromTheBeginOfTheSessionForWhatAnEarlierOneSaw) {
 }
 
 TEST_F(TestMapper, AViewWithoutDepthIsNeverAKeyframe) {
-  TrackedView blind{features::test_view(world_, 1, {}, 0.3, false), {}, {}};
+  scene::TrackedView blind{features::test_view(world_, 1, {}, 0.3, false), {}, {}};
   blind.pose.reference_keyframe = core::KeyframeId(0);
   EXPECT_FALSE(is_worth_keeping(map_, blind, config_));
   EXPECT_FALSE(can_start(blind.view, config_));
@@ -125,7 +125,7 @@ TEST_F(TestMapper, AViewWithoutDepthIsNeverAKeyframe) {
 
 TEST_F(TestMapper, ASecondKeyframeSeesOldLandmarksAgainAndAddsNewOnes) {
   const core::Rigid3 moved{core::exp_so3({0.0, 0.4, 0.0}), {0.3, 0.0, 0.1}};
-  const TrackedView tracked = tracked_at(moved);
+  const scene::TrackedView tracked = tracked_at(moved);
   const scene::MapVersion grown = apply(map_, add_keyframe(map_, tracked));
   ASSERT_EQ(grown.keyframes.size(), 2U);
   const scene::Keyframe& second = grown.keyframes[1];
@@ -141,7 +141,7 @@ TEST_F(TestMapper, ASecondKeyframeSeesOldLandmarksAgainAndAddsNewOnes) {
 }
 
 TEST_F(TestMapper, WhatPassesByBecomesNoLandmarkByItsDepth) {
-  TrackedView tracked = tracked_at({core::exp_so3({0.0, 0.4, 0.0}), {0.3, 0.0, 0.1}});
+  scene::TrackedView tracked = tracked_at({core::exp_so3({0.0, 0.4, 0.0}), {0.3, 0.0, 0.1}});
   const auto num_new = [&] {
     return apply(map_, add_keyframe(map_, tracked)).landmarks.size() - map_.landmarks.size();
   };
@@ -179,8 +179,9 @@ class WithoutDepth : public testing::Test {
   }
 
   // The view from there, which shows this share of the second keyframe's landmarks.
-  TrackedView tracked_at(const core::Rigid3& reference_from_frame, double shown_ratio) const {
-    TrackedView tracked{view_at(2, second_pose_ * reference_from_frame), {}, {}};
+  scene::TrackedView tracked_at(const core::Rigid3& reference_from_frame,
+                                double shown_ratio) const {
+    scene::TrackedView tracked{view_at(2, second_pose_ * reference_from_frame), {}, {}};
     tracked.pose.reference_keyframe = core::KeyframeId(1);
     tracked.pose.reference_from_frame = reference_from_frame;
     for (std::size_t i = 0; i < static_cast<std::size_t>(shown_ratio * num_points_); ++i)

@@ -195,8 +195,8 @@ std::vector<scene::Edit> part_places(const MapVersion& before, const MapVersion&
   return Parting(before, after, features).edits();
 }
 
-TrackedView without_parted(const MapVersion& map, TrackedView tracked,
-                           const features::Config& features) {
+scene::TrackedView without_parted(const MapVersion& map, scene::TrackedView tracked,
+                                  const features::Config& features) {
   const core::FramePose& pose = tracked.pose;
   const core::Rigid3 camera_from_world =
       inverse(world_from_frame(map, pose) * tracked.view.rig->body_from_camera[0]);

@@ -24,7 +24,7 @@ std::vector<scene::Edit> part_places(const scene::MapVersion& before,
 
 // Of the landmarks that the view shows, those that the map still has there. To be asked when places
 // were parted after the view was tracked.
-TrackedView without_parted(const scene::MapVersion& map, TrackedView tracked,
-                           const features::Config& features);
+scene::TrackedView without_parted(const scene::MapVersion& map, scene::TrackedView tracked,
+                                  const features::Config& features);
 
 }  // namespace samewhere::map

@@ -148,7 +148,7 @@ TEST(Fuse, WhatDoesNotFitIsLeftApart) {
 TEST(Fuse, WhatOnePictureShowsTwiceIsTwoThings) {
   const features::TestWorld world = features::test_world(3);
   const scene::MapVersion map = test_map(world, 1);
-  TrackedView tracked =
+  scene::TrackedView tracked =
       test_tracked(map, features::test_view(world, 1, test_walk(1)), test_walk(1), kNone);
   // the feature of one landmark shows another, and both are in the first picture
   const core::LandmarkId one = tracked.landmarks.at(0).second;

@@ -17,9 +17,10 @@ constexpr auto kNone = [](core::LandmarkId) { return false; };
 // The view as tracking would hand it over: every feature whose point is a landmark of the map shows
 // it, but for those that `is_overlooked` names by id.
 template <class IsOverlooked>
-TrackedView test_tracked(const scene::MapVersion& map, const features::View& view,
-                         const core::Rigid3& world_from_body, const IsOverlooked& is_overlooked) {
-  TrackedView tracked{view, {}, {}};
+scene::TrackedView test_tracked(const scene::MapVersion& map, const features::View& view,
+                                const core::Rigid3& world_from_body,
+                                const IsOverlooked& is_overlooked) {
+  scene::TrackedView tracked{view, {}, {}};
   const scene::Keyframe& reference = map.keyframes.back();
   tracked.pose.reference_keyframe = reference.id;
   tracked.pose.reference_from_frame = inverse(reference.world_from_body) * world_from_body;

@@ -20,7 +20,7 @@
 #include <samewhere/pairs/most_alike.hpp>
 #include <samewhere/pairs/other_camera.hpp>
 #include <samewhere/pairs/tower.hpp>
-#include <samewhere/pipeline/open_source.hpp>
+#include <samewhere/run/open_source.hpp>
 #include <samewhere/twin/studio.hpp>
 #include <samewhere/twin/walkthrough.hpp>
 
@@ -107,7 +107,7 @@ KnownViews views_of_twin(const pipeline::Config& config, const PairRule& rule) {
 }
 
 KnownViews views_of_recording(const pipeline::Config& config, const PairRule& rule) {
-  const auto source = pipeline::open_source_with_truth(config);
+  const auto source = run::open_source_with_truth(config);
   Viewer viewer(config, rule);
   KnownViews known;
   std::vector<int> frame_of;
@@ -126,7 +126,7 @@ KnownViews views_of_tower(pipeline::Config config, const PairRule& rule) {
   const TowerSource tower = tower_source(config.source);
   const std::vector<TowerImage> images = read_tower(tower);
   config.source = (tower.folder / "walk.txt").string();
-  const auto source = pipeline::open_source(config);
+  const auto source = run::open_source(config);
   core::Progress progress("looking at " + config.source, static_cast<int>(images.size()));
   Viewer viewer(config, rule);
   KnownViews known;

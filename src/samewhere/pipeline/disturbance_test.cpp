@@ -13,8 +13,8 @@
 
 #include <samewhere/core/random.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/twin/twin.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -52,7 +52,8 @@ struct RenderedWalk {
 // Rendered once: that takes longer than to track it.
 const RenderedWalk& walk() {
   static const RenderedWalk walk = [] {
-    const auto source = open_source(walk_config());
+    const Config config = walk_config();
+    const auto source = twin::open_twin(config.source, config.twin);
     RenderedWalk rendered{{}, source->truth().trajectory};
     while (auto frame = source->next()) rendered.frames.push_back(std::move(*frame));
     return rendered;

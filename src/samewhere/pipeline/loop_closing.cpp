@@ -2,9 +2,9 @@
 #include <memory>
 #include <utility>
 
+#include <samewhere/core/match_from_query.hpp>
 #include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/report/jpeg.hpp>
-#include <samewhere/report/loops.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/measure_rival.hpp>
@@ -99,8 +99,8 @@ class Places {
                                                       const core::LedgerRow& other,
                                                       const verify::ScaleErrors& scale,
                                                       const Config& config) const {
-    const auto pose = report::match_from_query_of(row.verdict);
-    const auto other_pose = report::match_from_query_of(other.verdict);
+    const auto pose = core::match_from_query_of(row.verdict);
+    const auto other_pose = core::match_from_query_of(other.verdict);
     if (!pose || !other_pose) return std::nullopt;
     if (one_place(config)(row.candidate.match, other.candidate.match)) return std::nullopt;
     return verify::measure_other_place(map_, claim_of(row.candidate, *pose),

@@ -21,7 +21,7 @@ scene::MapVersion MappingExchange::initialize(ToMapping start) {
   return map;
 }
 
-void MappingExchange::insert(map::TrackedView tracked, const cv::Mat& image,
+void MappingExchange::insert(scene::TrackedView tracked, const cv::Mat& image,
                              std::vector<core::FramePose> frames) {
   core::require(!in_progress_, "one keyframe is in progress at most");
   const core::KeyframeId id(num_keyframes_++);

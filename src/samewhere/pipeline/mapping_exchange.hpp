@@ -23,7 +23,8 @@ class MappingExchange {
   // The map that begins with a StartMap or StartMapByMotion; an earlier one is discarded. Waits.
   scene::MapVersion initialize(ToMapping start);
   // Becomes next_keyframe(); its frame is the last one of `frames`.
-  void insert(map::TrackedView tracked, const cv::Mat& image, std::vector<core::FramePose> frames);
+  void insert(scene::TrackedView tracked, const cv::Mat& image,
+              std::vector<core::FramePose> frames);
   bool is_keyframe_in_progress() const { return in_progress_.has_value(); }
   bool is_due(std::size_t num_frames) const;
   struct VisibleKeyframe {

@@ -25,7 +25,7 @@ class MappingExchangeTest : public testing::Test {
   }
 
   void insert(std::size_t frame) {
-    map::TrackedView tracked;
+    scene::TrackedView tracked;
     tracked.view.frame = core::FrameId(frame);
     exchange_.insert(tracked, {}, {});
   }

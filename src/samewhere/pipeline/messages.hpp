@@ -39,7 +39,7 @@ struct StartMapByMotion {
 
 // The view becomes a keyframe. Answered with the map in which it shows its landmarks.
 struct AddKeyframe {
-  map::TrackedView tracked;
+  scene::TrackedView tracked;
   cv::Mat image;  // empty: it was kept later than its frame; then no loop is looked for
   std::vector<core::FramePose> frames;  // since the last that were sent, its own the last of them
 };

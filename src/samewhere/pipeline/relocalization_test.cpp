@@ -6,8 +6,8 @@
 #include <opencv2/core/utility.hpp>
 
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/twin/twin.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -30,7 +30,7 @@ struct Walk {
 };
 
 Walk walk_of(const Config& config) {
-  const auto source = open_source(config);
+  const auto source = twin::open_twin(config.source, config.twin);
   Walk walk;
   while (const auto frame = source->next()) walk.frames.push_back(*frame);
   walk.truth = source->truth().trajectory;

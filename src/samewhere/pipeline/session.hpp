@@ -6,7 +6,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include <samewhere/map/mapper.hpp>
+#include <samewhere/scene/tracked_view.hpp>
 #include <samewhere/track/config.hpp>
 
 namespace samewhere::pipeline {
@@ -21,7 +21,7 @@ enum class SessionPhase { kInitializing, kTracking, kWeak, kLost, kRelocalized }
 
 // The last frame with a pose, from which the next one is predicted.
 struct TrackedFrame {
-  map::TrackedView tracked;
+  scene::TrackedView tracked;
   std::optional<cv::Mat> depth_m;
   core::Rigid3 last_from_next;  // constant velocity: the last motion is repeated
 };

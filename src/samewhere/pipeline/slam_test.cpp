@@ -3,9 +3,9 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
-#include <samewhere/pipeline/open_source.hpp>
 #include <samewhere/pipeline/profiles.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/twin/twin.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -23,7 +23,7 @@ Config short_walk() {
 
 void walk(Slam& slam, const Config& config) {
   cv::setNumThreads(1);
-  const auto source = open_source(config);
+  const auto source = twin::open_twin(config.source, config.twin);
   while (const auto frame = source->next()) slam.feed(*frame);
   slam.finish();
 }
@@ -56,7 +56,7 @@ TEST(Slam, FramesOfALongStayAreSavedThoughNoKeyframeComes) {
     num_saved += news.frames.size();
   };
   Slam slam(config, DepthFrom::kSensor, keep_map);
-  std::optional<core::Frame> frame = open_source(config)->next();
+  std::optional<core::Frame> frame = twin::open_twin(config.source, config.twin)->next();
   constexpr std::size_t kNumFrames = 70;
   for (std::size_t i = 0; i < kNumFrames; ++i) {
     frame->id = core::FrameId(i);
@@ -118,7 +118,7 @@ TEST(Slam, WithLoopsOffThereIsOdometryAlone) {
 TEST(Slam, BlackFramesAreLostAndTheWalkResumesAfterThem) {
   const Config config = short_walk();
   Slam slam(config);
-  const auto source = open_source(config);
+  const auto source = twin::open_twin(config.source, config.twin);
   while (auto frame = source->next()) {
     const auto index = frame->id.index();
     if (index == 10 || index == 11) {
@@ -138,7 +138,7 @@ TEST(Slam, BlackFramesAreLostAndTheWalkResumesAfterThem) {
 TEST(Slam, FramesBeforeTheMapSayWhatTheyWaitFor) {
   const Config config = short_walk();
   Slam slam(config);
-  const auto source = open_source(config);
+  const auto source = twin::open_twin(config.source, config.twin);
   for (int i = 0; i < 3; ++i) {
     auto frame = source->next();
     if (i < 2) frame->depth_m = cv::Mat::zeros(480, 640, CV_32F);
@@ -162,7 +162,7 @@ TEST(Slam, FramesBeforeTheMapSayWhatTheyWaitFor) {
 TEST(Slam, OneCameraStartsLateAndThenFollowsTheTruthUpToScale) {
   Config config = short_walk();
   config.source = "twin:office-loop?seed=5&camera=mono";
-  const auto source = open_source(config);
+  const auto source = twin::open_twin(config.source, config.twin);
   ASSERT_TRUE(is_scale_free(source->info()));
   Slam slam(config, DepthFrom::kMotion);
   cv::setNumThreads(1);
@@ -185,7 +185,7 @@ TEST(Slam, TwoCamerasStartFromOneFrameAndGiveTheSameBitsInThreadsAndInTurn) {
   cv::setNumThreads(1);
   Config config = short_walk();
   config.source = "twin:office-loop?seed=5&camera=stereo";
-  const auto source = open_source(config);
+  const auto source = twin::open_twin(config.source, config.twin);
   ASSERT_EQ(source->info().num_cameras, 2);
   ASSERT_FALSE(source->info().has_depth);
   Slam in_threads(config);

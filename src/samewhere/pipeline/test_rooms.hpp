@@ -57,7 +57,7 @@ class LookAlikeRooms : public testing::Test {
                return o.keyframe.index() >= kPerRoom;
              });
     };
-    map::TrackedView tracked = map::test_tracked(map, view, world_from_body, is_overlooked);
+    scene::TrackedView tracked = map::test_tracked(map, view, world_from_body, is_overlooked);
     // between the rooms odometry knows little
     tracked.pose.information = (i == kPerRoom ? 0.1 : 1e4) * core::Matrix6d::Identity();
     map = apply(map, map::add_keyframe(map, tracked));

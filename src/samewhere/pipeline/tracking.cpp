@@ -2,6 +2,7 @@
 #include <utility>
 
 #include <samewhere/features/orb.hpp>
+#include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/tracking.hpp>
 #include <samewhere/track/depth_alignment.hpp>
 
@@ -11,11 +12,11 @@ namespace {
 // A program that is killed loses no more poses.
 constexpr std::size_t kMaxUnsentFrames = 60;
 
-bool is_weak(const map::TrackedView& tracked) {
+bool is_weak(const scene::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
 
-bool is_missing_or_weak(const std::optional<map::TrackedView>& tracked) {
+bool is_missing_or_weak(const std::optional<scene::TrackedView>& tracked) {
   return !tracked || is_weak(*tracked);
 }
 
@@ -153,7 +154,7 @@ Tracking::MaybeTracked Tracking::initialize(const core::Frame& frame, const feat
   const core::KeyframeId newest = map_.version().keyframes.back().id;
   mapping_.note_keyframe(view.frame);
   map_.set_reference(newest);
-  map::TrackedView tracked{view, initial_pose(view, newest, initial->num_landmarks), {}, {}};
+  scene::TrackedView tracked{view, initial_pose(view, newest, initial->num_landmarks), {}, {}};
   state_.initialize({tracked, frame.depth_m, {}});
   if (initialization_.is_monocular()) pose_earlier_frames(*initial);
   return tracked;
@@ -259,12 +260,12 @@ Tracking::MaybeTracked Tracking::relocalize(const core::Frame& frame, const feat
   auto found = relocalization_.evaluate(view, map_.version(), answer.places, log_.last_measured());
   if (!found) return std::nullopt;
   map_.set_local_map(std::move(found->local_map));
-  map::TrackedView tracked = map_.tracked_view(view, found->track);
+  scene::TrackedView tracked = map_.tracked_view(view, found->track);
   tracked.pose.status = core::FrameStatus::kResumed;
   return tracked;
 }
 
-void Tracking::switch_reference(map::TrackedView& tracked) {
+void Tracking::switch_reference(scene::TrackedView& tracked) {
   std::vector<core::LandmarkId> seen;
   for (const auto& [feature, landmark] : tracked.landmarks) seen.push_back(landmark);
   const auto most = keyframe_showing_most(map_.version(), seen);
@@ -274,7 +275,7 @@ void Tracking::switch_reference(map::TrackedView& tracked) {
   if (*most != pose.reference_keyframe) pose = map_.relative_to(*most, pose);
 }
 
-void Tracking::check_scale(map::TrackedView& tracked) {
+void Tracking::check_scale(scene::TrackedView& tracked) {
   const TrackedFrame* last = state_.last_frame();
   if (last == nullptr || !is_without_depth(map_.version())) return;
   core::FramePose& pose = tracked.pose;
@@ -290,7 +291,7 @@ void Tracking::check_scale(map::TrackedView& tracked) {
   track::add_to_intervals(scale_drift_, pose.frame, *factor);
 }
 
-void Tracking::update_motion_model(const core::Frame& frame, const map::TrackedView& tracked) {
+void Tracking::update_motion_model(const core::Frame& frame, const scene::TrackedView& tracked) {
   const TrackedFrame* last = state_.last_frame();
   const core::Rigid3 last_from_this =
       last == nullptr
@@ -300,18 +301,18 @@ void Tracking::update_motion_model(const core::Frame& frame, const map::TrackedV
 }
 
 bool Tracking::can_insert_last() const {
-  const map::TrackedView& last = state_.last_frame()->tracked;
+  const scene::TrackedView& last = state_.last_frame()->tracked;
   return !is_map_fixed_ && !mapping_.is_keyframe(last.view.frame) &&
          map::can_keep(map_.version(), last.view, config_.map);
 }
 
-void Tracking::send_keyframe(const map::TrackedView& tracked, const cv::Mat& image) {
+void Tracking::send_keyframe(const scene::TrackedView& tracked, const cv::Mat& image) {
   core::FramePose& pose = log_.newest();
   core::require(pose.frame == tracked.view.frame, "only the newest frame becomes a keyframe");
   // from now on the frame moves with its keyframe
   pose.reference_keyframe = mapping_.next_keyframe();
   pose.reference_from_frame = core::Rigid3{};
-  map::TrackedView sent = tracked;
+  scene::TrackedView sent = tracked;
   sent.passing = passing_.shown_in(tracked.view, tracked.pose, map_.version());
   sent.pose = map_.by_odometry(tracked.pose, state_.tracked_since_keyframe());
   mapping_.insert(std::move(sent), image, log_.take_unsent());

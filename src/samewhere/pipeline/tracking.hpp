@@ -7,7 +7,6 @@
 #include <samewhere/core/frame.hpp>
 #include <samewhere/core/frame_pose.hpp>
 #include <samewhere/core/timing.hpp>
-#include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/frame_log.hpp>
 #include <samewhere/pipeline/initialization.hpp>
@@ -17,6 +16,7 @@
 #include <samewhere/pipeline/session.hpp>
 #include <samewhere/pipeline/visible_map.hpp>
 #include <samewhere/scene/map_file.hpp>
+#include <samewhere/scene/tracked_view.hpp>
 #include <samewhere/track/scale_drift_detector.hpp>
 #include <samewhere/track/tracker.hpp>
 
@@ -52,7 +52,7 @@ class Tracking {
   int num_reinitializations() const { return state_.num_reinitializations(); }
 
  private:
-  using MaybeTracked = std::optional<map::TrackedView>;
+  using MaybeTracked = std::optional<scene::TrackedView>;
 
   Tracking(const Config& config, SessionState state, scene::MapVersion map, std::uint16_t session,
            MappingLink& mapping);
@@ -75,10 +75,10 @@ class Tracking {
   // With few features, by alignment of the depth image to the one before.
   MaybeTracked track_by_depth(const core::Frame& frame, const features::View& view);
   // The reference becomes the keyframe that shows most of the view's landmarks.
-  void switch_reference(map::TrackedView& tracked);
+  void switch_reference(scene::TrackedView& tracked);
   // Monocular: a pose whose scale is suspected to have drifted is weak.
-  void check_scale(map::TrackedView& tracked);
-  void update_motion_model(const core::Frame& frame, const map::TrackedView& tracked);
+  void check_scale(scene::TrackedView& tracked);
+  void update_motion_model(const core::Frame& frame, const scene::TrackedView& tracked);
 
   bool may_reinitialize(const features::View& view) const;
   void discard_poses();
@@ -87,7 +87,7 @@ class Tracking {
 
   bool can_insert_last() const;
   // The newest frame becomes a keyframe. Empty image: it is no longer known.
-  void send_keyframe(const map::TrackedView& tracked, const cv::Mat& image);
+  void send_keyframe(const scene::TrackedView& tracked, const cv::Mat& image);
   // The map with the keyframe in progress. Waits.
   void receive_map();
 

@@ -1,3 +1,4 @@
+#include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/visible_map.hpp>
 #include <samewhere/track/drift_model.hpp>
 
@@ -37,9 +38,9 @@ core::FramePose VisibleMap::by_odometry(const core::FramePose& pose,
   return last_chain_->second ? relative_to(newest, pose) : pose;
 }
 
-map::TrackedView VisibleMap::tracked_view(const features::View& view,
-                                          const track::Track& track) const {
-  map::TrackedView tracked{view, track.pose, {}, {}};
+scene::TrackedView VisibleMap::tracked_view(const features::View& view,
+                                            const track::Track& track) const {
+  scene::TrackedView tracked{view, track.pose, {}, {}};
   tracked.pose.log_scale = version_.at(track.pose.reference_keyframe).log_scale;
   for (const auto& match : track.matches) {
     tracked.landmarks.emplace_back(match.second,

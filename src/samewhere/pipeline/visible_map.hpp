@@ -4,9 +4,9 @@
 #include <utility>
 
 #include <samewhere/map/config.hpp>
-#include <samewhere/map/mapper.hpp>
 #include <samewhere/scene/local_map.hpp>
 #include <samewhere/scene/map_version.hpp>
+#include <samewhere/scene/tracked_view.hpp>
 #include <samewhere/track/tracker.hpp>
 
 namespace samewhere::pipeline {
@@ -37,7 +37,7 @@ class VisibleMap {
   // keyframe's index is below `tracked_since_keyframe`: no odometry leads to the pose.
   core::FramePose by_odometry(const core::FramePose& pose, std::uint64_t tracked_since_keyframe);
   // With landmarks of the local map.
-  map::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
+  scene::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
 
  private:
   struct Chain {

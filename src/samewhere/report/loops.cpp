@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/match_from_query.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/loops.hpp>
 
@@ -73,14 +74,14 @@ Json scores_of(const core::Verdict& verdict) {
     scores["num_sequence_inliers"] = evidence.sequence->num_inliers;
   }
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
-  const std::optional<core::Sim3> pose = match_from_query_of(verdict);
+  const std::optional<core::Sim3> pose = core::match_from_query_of(verdict);
   if (pose && (pose->scale != 1.0 || (loop != nullptr && loop->scale_is_free)))
     add_score(scores, "scale", pose->scale);
   return scores;
 }
 
 Json pose_of(const core::Verdict& verdict) {
-  const std::optional<core::Sim3> match_from_query = match_from_query_of(verdict);
+  const std::optional<core::Sim3> match_from_query = core::match_from_query_of(verdict);
   if (!match_from_query) return nullptr;
   const Eigen::Vector3d& t = match_from_query->translation;
   const Eigen::Quaterniond& q = match_from_query->rotation;
@@ -114,17 +115,6 @@ std::string dumped(const Json& json, int indent) {
 }
 
 }  // namespace
-
-std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict) {
-  std::optional<core::Sim3> match_from_query;
-  if (const auto* loop = std::get_if<core::LoopClosure>(&verdict))
-    match_from_query = loop->match_from_query;
-  else if (core::evidence_of(verdict).geometry)
-    match_from_query = core::evidence_of(verdict).geometry->match_from_query;
-  if (match_from_query && !core::is_finite(core::rigid_part(*match_from_query)))
-    return std::nullopt;
-  return match_from_query;
-}
 
 std::string name_of_match(const core::Candidate& candidate) {
   const std::string index = std::to_string(candidate.match.index());

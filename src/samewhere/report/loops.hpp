@@ -8,10 +8,6 @@
 
 namespace samewhere::report {
 
-// The relative pose a row speaks of: the loop's, or for a refused candidate the one geometry found.
-// Nothing without a pose or where it is not finite.
-std::optional<core::Sim3> match_from_query_of(const core::Verdict& verdict);
-
 // How a person is told of the match: its index, and of which session it is if not of the query's.
 std::string name_of_match(const core::Candidate& candidate);
 

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include <samewhere/core/descriptor.hpp>
+#include <samewhere/core/source.hpp>
+#include <samewhere/core/truth.hpp>
+#include <samewhere/describe/describer.hpp>
+#include <samewhere/pipeline/config.hpp>
+
+namespace samewhere::paper {
+
+// A describer under the name that tables give it.
+struct NamedDescriber {
+  std::string name;
+  std::shared_ptr<describe::Describer> describer;
+};
+
+// "hog", an ONNX file, or several separated by commas; empty: the one of the config. A network is
+// called by its file, without folder and extension. Throws InputError on a network that cannot be
+// used, and on two describers of one name.
+std::vector<NamedDescriber> make_describers(const std::string& list,
+                                            const pipeline::Config& config);
+
+// The config for "SOURCE", "SOURCE@149" or "SOURCE@10s": a recording or a twin building, and the
+// window of its protocol in frames or seconds, instead of the config's. Throws InputError on a
+// window that is out of range.
+pipeline::Config with_source(pipeline::Config config, const std::string& source_at_window);
+
+// A recording whose loops are known, open and not yet read.
+struct OpenRecording {
+  pipeline::Config config;  // with its window in frames
+  std::string name;
+  int num_frames = 0;
+  std::unique_ptr<core::Source> source;
+  core::Truth truth;  // has places
+};
+
+// Opens each source once, and has its truth: what a twin building has to compute for that is
+// computed now. Throws InputError naming the source if it cannot be opened or its truth says
+// nothing about places, and on two recordings of one name and window, whose figures nobody could
+// tell apart; Interrupted after Ctrl-C.
+std::vector<OpenRecording> open_recordings(const std::vector<pipeline::Config>& configs);
+
+// What files on this recording are called: name and window, in letters, digits and -_. only.
+std::string file_stem(const std::string& recording, int window_frames);
+
+// All views of a recording as one describer sees them.
+struct DescribedViews {
+  std::string describer;
+  std::uint64_t checksum = 0;           // of the describer
+  std::vector<core::Descriptor> views;  // one a frame, in their order
+  std::vector<double> durations_ms;     // of preprocessing and description of the timed frames
+};
+
+// A recording that was read.
+struct DescribedRecording {
+  std::string name;
+  int window_frames = 0;
+  core::Truth truth;              // has places
+  std::vector<int> timed_frames;  // ascending
+  std::vector<DescribedViews> by_describer;
+};
+
+using SeePicture = std::function<void(const cv::Mat& picture)>;
+
+// Reads the recording and describes each frame by each describer, with a progress line on stderr;
+// `also_see` is shown each picture once. Descriptions are timed after that, when nobody reads or
+// renders any more: those of up to 400 frames, spread evenly, by one describer after the other.
+// Nothing after Ctrl-C. Throws InputError on a bad frame.
+std::optional<DescribedRecording> describe_recording(OpenRecording recording,
+                                                     const std::vector<NamedDescriber>& describers,
+                                                     const SeePicture& also_see = nullptr);
+
+}  // namespace samewhere::paper

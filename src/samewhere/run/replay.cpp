@@ -1,0 +1,106 @@
+#include <map>
+#include <utility>
+
+#include <samewhere/run/replay.hpp>
+#include <samewhere/verify/decide.hpp>
+#include <samewhere/verify/waiting.hpp>
+
+namespace samewhere::run {
+namespace {
+
+bool is_refused_by_graph(const core::Verdict& verdict) {
+  const auto* refused = std::get_if<core::Rejection>(&verdict);
+  return refused != nullptr &&
+         (refused->stage == core::Refusal::kGraph || refused->stage == core::Refusal::kWithdrawn);
+}
+
+// Closed by a person's word: a loop whatever the thresholds.
+bool is_by_hand(const core::Verdict& verdict) {
+  const auto* loop = std::get_if<core::LoopClosure>(&verdict);
+  return loop != nullptr && loop->is_by_hand;
+}
+
+bool is_waiting(const core::Verdict& verdict) {
+  const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
+  return ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence;
+}
+
+// The run stopped measuring at its own thresholds.
+bool is_unmeasured(const core::Evidence& evidence, const core::Verdict& after,
+                   const verify::Config& config) {
+  if (is_waiting(after) && !evidence.sequence) return true;
+  if (evidence.geometry || !config.require_geometry) return false;
+  const auto* refused = std::get_if<core::Rejection>(&after);
+  return refused == nullptr || refused->stage == core::Refusal::kMatches;
+}
+
+Replay outcome_of(const core::LedgerRow& before, const core::Verdict& after,
+                  const verify::Config& config) {
+  const core::Evidence& evidence = core::evidence_of(before.verdict);
+  if (is_unmeasured(evidence, after, config)) return Replay::kUnmeasured;
+  if (is_refused_by_graph(before.verdict) && core::is_loop(after)) return Replay::kGraph;
+  return core::is_loop(before.verdict) == core::is_loop(after) ? Replay::kSame : Replay::kChanged;
+}
+
+// What the views around a candidate say depends on which other candidates pass: forgotten, to be
+// found anew.
+core::Evidence without_neighbours(core::Evidence evidence) {
+  if (evidence.sequence) {
+    evidence.sequence->num_views = 0;
+    evidence.sequence->num_inliers = 0;
+    evidence.sequence->is_over = false;
+  }
+  return evidence;
+}
+
+// Judges in the order of the run.
+class SecondJudge {
+ public:
+  explicit SecondJudge(const verify::Config& config) : config_(config), waiting_(config) {}
+
+  void judge(const core::LedgerRow& row) {
+    const core::Evidence evidence = without_neighbours(core::evidence_of(row.verdict));
+    if (evidence.sequence && evidence.sequence->query_view > view_) {
+      view_ = evidence.sequence->query_view;
+      settle(waiting_.settle(view_ - 1));  // the run has seen all views before, found or not
+    }
+    core::Verdict verdict = decide(row.candidate, evidence, history_, config_);
+    if (core::is_loop(verdict)) history_.last_loop_query = row.candidate.query;
+    if (is_waiting(verdict) && evidence.sequence) waiting_.add(row.candidate, evidence);
+    verdicts_.insert_or_assign(row.candidate.id, std::move(verdict));
+  }
+
+  std::map<core::CandidateId, core::Verdict> verdicts() && {
+    settle(waiting_.settle_all());
+    return std::move(verdicts_);
+  }
+
+ private:
+  void settle(const std::vector<core::LedgerRow>& rows) {
+    for (const core::LedgerRow& row : rows)
+      verdicts_.insert_or_assign(row.candidate.id, row.verdict);
+  }
+
+  verify::Config config_;
+  verify::History history_;
+  verify::Waiting waiting_;
+  int view_ = 0;
+  std::map<core::CandidateId, core::Verdict> verdicts_;
+};
+
+}  // namespace
+
+std::vector<ReplayedRow> replay(const core::Ledger& ledger, const verify::Config& config) {
+  SecondJudge judge(config);
+  for (const core::LedgerRow& row : ledger) judge.judge(row);
+  const auto verdicts = std::move(judge).verdicts();
+  std::vector<ReplayedRow> rows;
+  for (const core::LedgerRow& row : ledger) {
+    const core::Verdict& after =
+        is_by_hand(row.verdict) ? row.verdict : verdicts.at(row.candidate.id);
+    rows.push_back({row, after, outcome_of(row, after, config)});
+  }
+  return rows;
+}
+
+}  // namespace samewhere::run

@@ -1,0 +1,295 @@
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/interrupt.hpp>
+#include <samewhere/core/progress.hpp>
+#include <samewhere/input/newest.hpp>
+#include <samewhere/input/prefetch.hpp>
+#include <samewhere/report/figure.hpp>
+#include <samewhere/report/funnel.hpp>
+#include <samewhere/report/jpeg.hpp>
+#include <samewhere/run/map_export.hpp>
+#include <samewhere/run/mapped_slam.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/recognition.hpp>
+#include <samewhere/run/run.hpp>
+#include <samewhere/run/run_metrics.hpp>
+
+namespace samewhere::run {
+namespace {
+
+// Lengths, in edges, over which the drift model is held against the truth.
+constexpr int kChains[] = {1, 10};
+
+RunOutcome start_outcome(const pipeline::Config& config, const core::SourceInfo& info) {
+  RunOutcome outcome;
+  outcome.record.title = info.name;
+  outcome.record.source = config.source;
+  outcome.record.config_yaml = core::config_as_yaml(config);
+  return outcome;
+}
+
+// The frames of a source until it ends, breaks, or somebody presses Ctrl-C, with a progress line on
+// stderr. What ended them is in the outcome's record.
+class FrameFeed {
+ public:
+  // `source` and `outcome` outlive the feed.
+  FrameFeed(core::Source& source, RunOutcome& outcome, bool is_quiet)
+      : source_(source),
+        outcome_(outcome),
+        progress_("frames", source.info().num_frames, is_quiet) {}
+
+  std::optional<core::Frame> next() {
+    if (num_given_ > 0) progress_.update(num_given_ + num_dropped_);
+    outcome_.record.is_interrupted = core::is_interrupted();
+    if (outcome_.record.is_interrupted) return std::nullopt;
+    try {
+      const core::ScopedTimer timer(timings_, report::kWaitForInputStage);
+      ++num_given_;
+      std::optional<core::Frame> frame = source_.next();
+      if (frame) num_dropped_ += frame->num_dropped_before;
+      // or while it was waited for
+      if (!frame) outcome_.record.is_interrupted = core::is_interrupted();
+      return frame;
+    } catch (const core::InputError& error) {
+      outcome_.record.input_error = error.what();
+    } catch (const core::Interrupted&) {
+      outcome_.record.is_interrupted = true;
+    }
+    return std::nullopt;
+  }
+
+  // When all frames were given: how long they took to come, and what was dropped meanwhile.
+  void report() const {
+    report::RunRecord& record = outcome_.record;
+    record.timings.add(timings_);
+    if (source_.info().is_live) {
+      record.figures.push_back(report::figure("frames dropped", "{}", num_dropped_));
+    }
+  }
+
+ private:
+  core::Source& source_;
+  RunOutcome& outcome_;
+  core::Timings timings_;
+  core::Progress progress_;
+  int num_given_ = 0;
+  int num_dropped_ = 0;
+};
+
+// Read ahead in a thread of its own: one frame, or in real time the newest.
+std::unique_ptr<core::Source> read_ahead(std::unique_ptr<core::Source> source,
+                                         const pipeline::Config& config) {
+  if (source->info().is_live) return input::newest(std::move(source));
+  return config.input.realtime ? input::played(std::move(source))
+                               : input::prefetched(std::move(source));
+}
+
+void record_frames(const pipeline::Slam& slam, const std::vector<std::string>& names,
+                   report::RunRecord& record) {
+  const core::Trajectory trajectory = pipeline::trajectory_of(slam.map(), slam.frames());
+  std::size_t num_measured = 0;
+  for (std::size_t i = 0; i < slam.frames().size(); ++i) {
+    report::FrameRecord frame{slam.frames()[i], names[i], std::nullopt};
+    if (frame.pose.is_measured)
+      frame.world_from_camera = trajectory[num_measured++].world_from_camera;
+    record.frames.push_back(std::move(frame));
+  }
+}
+
+// Thumbnails are kept for every frame that may be asked for, and dropped at the end if it was not.
+void drop_unused_thumbnails(report::RunRecord& record) {
+  std::map<core::FrameId, std::string> used;
+  for (const auto& row : record.ledger) {
+    for (const core::FrameId frame : {row.candidate.query, row.candidate.match}) {
+      const auto known = record.thumbnails.find(frame);
+      if (known != record.thumbnails.end()) used.insert(*known);
+    }
+  }
+  record.thumbnails = std::move(used);
+}
+
+// Of frames of the known map that the ledger speaks of. Pictures are an extra: without them the run
+// is what it is.
+void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& record) try {
+  scene::MapFile file = scene::MapFile::open(map);
+  for (const core::LedgerRow& row : record.ledger) {
+    const core::FrameId match = row.candidate.match;
+    if (match.session() == row.candidate.query.session() || record.thumbnails.contains(match))
+      continue;
+    if (const auto jpeg = file.thumbnail(match)) record.thumbnails[match] = *jpeg;
+  }
+} catch (const core::InputError& error) {
+  spdlog::warn("{}; the report lacks its pictures", error.what());
+}
+
+void note_first_pose(const pipeline::Slam& slam, report::RunRecord& record) {
+  if (!record.first_pose_s && slam.frames().back().is_measured)
+    record.first_pose_s = core::seconds_since_program_start();
+}
+
+void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& names,
+                 report::RunRecord& record) {
+  record_frames(slam, names, record);
+  record.ledger = slam.ledger();
+  record.points = points_of(slam.map());
+  record.odometry = pipeline::odometry_of(slam.map(), slam.frames());
+  record.timings.add(slam.timings());
+  record.timings.add_processor(report::kWholeFrameStage, slam.processor_ms_beside());
+  drop_unused_thumbnails(record);
+}
+
+// "frames 839 to 853: lengths 1/8.1 of the usual", of at most three; the numbers are of all.
+report::Figure figure_of(const std::vector<track::ScaleDriftInterval>& intervals) {
+  constexpr std::size_t kMost = 3;
+  report::Figure figure{"scale drift suspected", "", {}};
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const auto first = static_cast<double>(intervals[i].first.index());
+    const auto last = static_cast<double>(intervals[i].last.index());
+    const double factor = intervals[i].factor;
+    figure.numbers.insert(figure.numbers.end(), {first, last, factor});
+    if (i >= kMost) continue;
+    const std::string of_usual = factor < 1.0 ? fmt::format("1/{:.1f} of the usual", 1.0 / factor)
+                                              : fmt::format("{:.1f} times the usual", factor);
+    figure.value +=
+        fmt::format("{}frames {} to {}: lengths {}", i == 0 ? "" : "; ", first, last, of_usual);
+  }
+  if (intervals.size() > kMost) figure.value += fmt::format("; {} more", intervals.size() - kMost);
+  return figure;
+}
+
+// How good it is, as figures, and the truth to be drawn with it.
+void record_figures(const MappedSlam& mapped, const pipeline::Config& config, const MapPlan& plan,
+                    const core::Truth& truth, report::RunRecord& record) {
+  const pipeline::Slam& slam = mapped.slam();
+  SlamFindings findings = findings_of(record, !mapped.is_metric());
+  for (const int num_edges : kChains) {
+    if (mapped.is_metric())
+      findings.odometry_chains[num_edges] =
+          pipeline::odometry_chains_of(slam.map(), slam.session(), num_edges);
+  }
+  const SlamEvaluation evaluation = evaluate_slam(findings, truth);
+  record.figures = figures_of(evaluation);
+  record.is_scale_unknown = !mapped.is_metric();
+  if (record.is_scale_unknown) {
+    record.figures.push_back(
+        {"scale", "unknown: one camera without depth; lengths of the results are in map units"});
+  }
+  if (!slam.scale_drift().empty()) {
+    record.figures.push_back(figure_of(slam.scale_drift()));
+    spdlog::warn("scale drift suspected: {}", record.figures.back().value);
+  }
+  if (evaluation.num_measured == 0 && plan.known.empty())
+    record.figures.push_back({"no start, at the end", slam.why_not_initialized()});
+  record.figures.push_back(report::figure("starts given up", "{}", slam.num_reinitializations()));
+  record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
+                                          num_live(slam.map().keyframes),
+                                          num_live(slam.map().landmarks)));
+  record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
+  record.truth = aligned_truth(evaluation, truth);
+}
+
+// Frames that geometry takes for a place seen before and no views in a row confirm; none if any are
+// confirmed.
+std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger) {
+  std::set<core::FrameId> unconfirmed;
+  for (const core::LedgerRow* row : report::final_rows(ledger)) {
+    if (core::is_loop(row->verdict)) return {};
+    const auto* refused = std::get_if<core::Rejection>(&row->verdict);
+    if (refused != nullptr && refused->stage == core::Refusal::kSequence)
+      unconfirmed.insert(row->candidate.query);
+  }
+  return unconfirmed;
+}
+
+// What whoever wonders why so little was recognised should know.
+std::optional<std::string> note_on(const core::Ledger& ledger, const pipeline::Config& config) {
+  if (ledger.empty()) {
+    return fmt::format(
+        "no frame is more than {} frames older than another that looks like it "
+        "(retrieve.window_frames)",
+        config.retrieve.window_frames);
+  }
+  const std::size_t num_unconfirmed = unconfirmed_queries(ledger).size();
+  if (num_unconfirmed == 0) return std::nullopt;
+  return fmt::format(
+      "{} frames match an earlier one, but no {} views in a row do; where no "
+      "two places look alike, --set verify.min_views=1 believes each view",
+      num_unconfirmed, config.verify.min_views);
+}
+
+}  // namespace
+
+RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Config& given,
+                    const MapPlan& plan, bool is_quiet) {
+  const auto source = read_ahead(for_slam(std::move(unbuffered), given), given);
+  require_slam_input(source->info(), given);
+  const core::Truth truth = source->truth();
+  const pipeline::Config config = with_window_in_frames(given, source->info());
+  RunOutcome outcome = start_outcome(config, source->info());
+  const bool is_monocular = is_scale_free(source->info());
+  MappedSlam mapped(
+      config, is_monocular ? pipeline::DepthFrom::kMotion : pipeline::DepthFrom::kSensor, plan);
+  const pipeline::Slam& slam = mapped.slam();
+  std::vector<std::string> names;
+  FrameFeed feed(*source, outcome, is_quiet);
+  while (std::optional<core::Frame> frame = feed.next()) {
+    const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
+    mapped.feed(*frame);
+    names.push_back(frame->name);
+    note_first_pose(slam, outcome.record);
+  }
+
+  outcome.map_error = mapped.finish();
+  if (!source->info().is_live && !config.input.realtime)
+    outcome.record.processor_ms = core::process_processor_ms();
+
+  report::RunRecord& record = outcome.record;
+  record.thumbnails = mapped.take_thumbnails();
+  record_slam(slam, names, record);
+  if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
+  record_figures(mapped, config, plan, truth, record);
+  feed.report();
+  return outcome;
+}
+
+RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const pipeline::Config& given,
+                           std::function<void()> begin, bool is_quiet) {
+  const auto source = read_ahead(std::move(unbuffered), given);
+  const core::Truth truth = source->truth();
+  pipeline::Config config = with_window_in_frames(given, source->info());
+  config.verify.require_pose = false;  // there is no map that could use one
+  RunOutcome outcome = start_outcome(config, source->info());
+  Recognition recognition(config);
+  FrameFeed feed(*source, outcome, is_quiet);
+  const auto run = config.threads ? run_in_threads : run_in_turn;
+  const auto next = [&] {
+    auto frame = feed.next();
+    if (frame && begin) std::exchange(begin, {})();
+    return frame;
+  };
+  run(next, recognition.steps());
+  std::move(recognition).report_to(outcome);
+  report::RunRecord& record = outcome.record;
+  feed.report();
+  drop_unused_thumbnails(record);
+  const RecognitionFindings findings{static_cast<int>(report::final_rows(record.ledger).size()),
+                                     outcome.matches, outcome.accepted,
+                                     config.retrieve.window_frames};
+  const auto measured = figures_of(evaluate_recognition(findings, truth));
+  record.figures.insert(record.figures.begin(), measured.begin(), measured.end());
+  if (auto note = note_on(record.ledger, config))
+    record.figures.push_back({"note", *std::move(note)});
+  return outcome;
+}
+
+}  // namespace samewhere::run

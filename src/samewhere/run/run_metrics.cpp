@@ -1,0 +1,312 @@
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <samewhere/report/figure.hpp>
+#include <samewhere/report/frames.hpp>
+#include <samewhere/report/funnel.hpp>
+#include <samewhere/run/run_metrics.hpp>
+
+namespace samewhere::run {
+namespace {
+
+using report::figure;
+using report::Figure;
+
+int count_refused(const std::vector<const core::LedgerRow*>& rows, core::Refusal stage) {
+  return static_cast<int>(std::count_if(rows.begin(), rows.end(), [&](const auto* row) {
+    const auto* rejection = std::get_if<core::Rejection>(&row->verdict);
+    return rejection != nullptr && rejection->stage == stage;
+  }));
+}
+
+// Whether it came as far as the check whether the matches agree on one geometry.
+bool has_matches(const core::Verdict& verdict) {
+  const auto* rejection = std::get_if<core::Rejection>(&verdict);
+  return rejection == nullptr || rejection->stage >= core::Refusal::kInliers;
+}
+
+std::vector<evaluate::Match> as_matches(const std::vector<report::ScoredPair>& pairs) {
+  std::vector<evaluate::Match> matches;
+  for (const auto& pair : pairs) {
+    matches.push_back(
+        {static_cast<int>(pair.query.index()), static_cast<int>(pair.match.index()), pair.score});
+  }
+  return matches;
+}
+
+Figure figure_of_share(const char* name, int part, int whole) {
+  return figure(name, "{} of {} ({:.1f} %)", part, whole, whole > 0 ? 100.0 * part / whole : 0.0);
+}
+
+std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
+  std::vector<Figure> figures = {figure_of_share("frames with a measured pose",
+                                                 evaluation.num_measured, evaluation.num_frames)};
+  if (const auto& ate = evaluation.ate) {
+    figures.push_back(figure(evaluation.is_scale_free ? "ATE RMSE (median, max), scale aligned"
+                                                      : "ATE RMSE (median, max)",
+                             "{:.4f} m ({:.4f}, {:.4f})", ate->rmse_m, ate->median_m, ate->max_m));
+  }
+  if (evaluation.path_m > 0.0) {
+    figures.push_back(figure("path length", "{:.2f} m", evaluation.path_m));
+  }
+  if (const auto& ate = evaluation.odometry_ate) {
+    figures.push_back(figure("ATE RMSE before loop closing", "{:.4f} m", ate->rmse_m));
+  }
+  if (const auto& rpe = evaluation.rpe) {
+    figures.push_back(figure("rotational error over 1 s, median (RMSE)", "{:.2f} degrees ({:.2f})",
+                             rpe->rotation_median_deg, rpe->rotation_rmse_deg));
+    figures.push_back(figure("translational error over 1 s, median (RMSE)", "{:.4f} m ({:.4f})",
+                             rpe->translation_median_m, rpe->translation_rmse_m));
+  }
+  return figures;
+}
+
+evaluate::AcceptedLoop loop_of(const core::LedgerRow& row, const StampOf& stamp_of) {
+  evaluate::AcceptedLoop loop;
+  loop.query = static_cast<int>(row.candidate.query.index());
+  loop.match = static_cast<int>(row.candidate.match.index());
+  loop.query_stamp_s = stamp_of.at(row.candidate.query);
+  loop.match_stamp_s = stamp_of.at(row.candidate.match);
+  const auto& match_from_query = std::get<core::LoopClosure>(row.verdict).match_from_query;
+  if (match_from_query) loop.match_from_query = rigid_part(*match_from_query);
+  return loop;
+}
+
+// Who was found again, from one place that the judge told of his view.
+struct FoundAgain {
+  evaluate::AcceptedLoop loop;  // its pose: where the trajectory has him, whatever the judge said
+  double apart_m = 0.0;         // from where the judge would have him
+};
+
+std::optional<FoundAgain> found_again(const evaluate::AcceptedLoop& told,
+                                      const core::Trajectory& trajectory) {
+  const auto world_from_query = evaluate::truth_at(trajectory, told.query_stamp_s);
+  const auto world_from_match = evaluate::truth_at(trajectory, told.match_stamp_s);
+  if (!told.match_from_query || !world_from_query || !world_from_match) return std::nullopt;
+  FoundAgain found{told, 0.0};
+  found.loop.match_from_query = inverse(*world_from_match) * *world_from_query;
+  found.apart_m =
+      (told.match_from_query->translation - found.loop.match_from_query->translation).norm();
+  return found;
+}
+
+// Of places where he is, the one seen first: it is the visit that he joins. Else the nearest.
+bool speaks_rather(const FoundAgain& a, const FoundAgain& b) {
+  constexpr double kThere_m = 0.2;
+  const bool is_a_there = a.apart_m <= kThere_m;
+  const bool is_b_there = b.apart_m <= kThere_m;
+  if (is_a_there && is_b_there) return a.loop.match < b.loop.match;
+  return a.apart_m < b.apart_m;
+}
+
+// Whether an earlier visit was joined by who was found again in this one.
+bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& found_again) {
+  return std::any_of(found_again.loops.begin(), found_again.loops.end(), [&](const auto& checked) {
+    return checked.truth == evaluate::LoopTruth::kRight && checked.loop.match < revisit.first &&
+           revisit.first <= checked.loop.query && checked.loop.query <= revisit.last;
+  });
+}
+
+Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
+  return figure(
+      fmt::format("squared error of {} over its belief",
+                  num_edges == 1 ? "an odometry edge" : fmt::format("{} edges", num_edges)),
+      "{:.1f} (honest: 6, {:.1f} to {:.1f}; median {:.1f}; {} measured)", drift.mean,
+      drift.band_low, drift.band_high, drift.median, drift.num_motions);
+}
+
+}  // namespace
+
+void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings& findings) {
+  auto rows = report::final_rows(ledger);
+  const auto own = std::stable_partition(rows.begin(), rows.end(), [](const core::LedgerRow* row) {
+    return row->candidate.match.session() == row->candidate.query.session();
+  });
+  findings.num_of_known_map = static_cast<int>(rows.end() - own);
+  findings.num_known_places = static_cast<int>(std::count_if(
+      own, rows.end(), [](const core::LedgerRow* row) { return core::is_loop(row->verdict); }));
+  rows.erase(own, rows.end());  // no truth knows the frames of another session
+  findings.num_candidates = static_cast<int>(rows.size());
+  findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
+  findings.num_withdrawn = count_refused(rows, core::Refusal::kWithdrawn);
+  for (const auto* row : rows) {
+    if (row->candidate.is_lost) continue;  // a place, no loop
+    if (has_matches(row->verdict)) {
+      findings.matching.push_back({static_cast<int>(row->candidate.query.index()),
+                                   static_cast<int>(row->candidate.match.index())});
+    }
+    if (core::is_loop(row->verdict)) findings.loops.push_back(loop_of(*row, stamp_of));
+  }
+}
+
+void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
+                     const std::set<core::FrameId>& resumed, SlamFindings& findings) {
+  std::map<core::FrameId, FoundAgain> best;
+  for (const auto* row : report::final_rows(ledger)) {
+    const core::Candidate& candidate = row->candidate;
+    const bool is_told = candidate.is_lost && core::is_loop(row->verdict) &&
+                         candidate.match.session() == candidate.query.session();
+    if (!is_told || !resumed.contains(candidate.query)) continue;
+    const auto found = found_again(loop_of(*row, stamp_of), findings.trajectory);
+    if (!found) continue;
+    const auto [it, is_first] = best.try_emplace(candidate.query, *found);
+    if (!is_first && speaks_rather(*found, it->second)) it->second = *found;
+  }
+  for (const auto& [frame, found] : best) findings.found_again.push_back(found.loop);
+}
+
+SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
+  SlamFindings findings;
+  findings.num_frames = static_cast<int>(record.frames.size());
+  findings.trajectory = report::measured_trajectory(record.frames);
+  findings.odometry = record.odometry;
+  findings.is_scale_free = is_scale_free;
+  StampOf stamp_of;
+  std::set<core::FrameId> resumed;
+  for (const auto& frame : record.frames) {
+    stamp_of[frame.pose.frame] = frame.pose.stamp_s;
+    if (frame.pose.status == core::FrameStatus::kResumed) resumed.insert(frame.pose.frame);
+  }
+  add_loops(record.ledger, stamp_of, findings);
+  add_found_again(record.ledger, stamp_of, resumed, findings);
+  return findings;
+}
+
+SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth) {
+  SlamEvaluation evaluation;
+  evaluation.num_frames = findings.num_frames;
+  evaluation.num_measured = static_cast<int>(findings.trajectory.size());
+  evaluation.is_scale_free = findings.is_scale_free;
+  const auto alignment =
+      findings.is_scale_free ? evaluate::Alignment::kSim3 : evaluate::Alignment::kSe3;
+  evaluation.ate = evaluate::ate(truth.trajectory, findings.trajectory, alignment);
+  evaluation.odometry_ate = evaluate::ate(truth.trajectory, findings.odometry, alignment);
+  if (evaluation.ate) {
+    evaluation.path_m = evaluate::path_length_m(
+        truth.trajectory, findings.trajectory.front().stamp_s, findings.trajectory.back().stamp_s);
+  }
+  const double scale = evaluation.ate ? evaluation.ate->scale : 1.0;
+  evaluation.rpe = evaluate::rpe(truth.trajectory, findings.trajectory, 1.0, scale);
+  evaluation.num_candidates = findings.num_candidates;
+  evaluation.num_of_known_map = findings.num_of_known_map;
+  evaluation.num_known_places = findings.num_known_places;
+  evaluation.loops = evaluate::check_loops(findings.loops, truth, scale);
+  evaluation.found_again = evaluate::check_loops(findings.found_again, truth, scale);
+  for (const auto& revisit : truth.revisits.value_or(std::vector<core::FrameSpan>{})) {
+    const bool is_joined = evaluate::is_closed(revisit, evaluation.loops.loops) ||
+                           is_rejoined(revisit, evaluation.found_again);
+    evaluation.num_rejoined += is_joined ? 1 : 0;
+  }
+  evaluation.num_refused_by_graph = findings.num_refused_by_graph;
+  evaluation.num_withdrawn = findings.num_withdrawn;
+  if (!truth.impostors.empty()) {
+    evaluation.num_impostors_matching = static_cast<int>(
+        std::count_if(findings.matching.begin(), findings.matching.end(), [&](const auto& pair) {
+          return evaluate::are_impostors(truth.impostors, pair.query, pair.match);
+        }));
+  }
+  for (const auto& [num_edges, motions] : findings.odometry_chains) {
+    if (const auto found = evaluate::consistency(motions, truth.trajectory))
+      evaluation.drift_model[num_edges] = *found;
+  }
+  return evaluation;
+}
+
+core::Trajectory aligned_truth(const SlamEvaluation& evaluation, const core::Truth& truth) {
+  if (!evaluation.ate) return {};
+  const core::Sim3 estimate_from_truth = inverse(evaluation.ate->truth_from_estimate);
+  core::Trajectory aligned = truth.trajectory;
+  for (auto& pose : aligned) {
+    const core::Sim3 placed = estimate_from_truth * core::Sim3::from_rigid(pose.world_from_camera);
+    pose.world_from_camera = {placed.rotation, placed.translation};
+  }
+  return aligned;
+}
+
+RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
+                                           const core::Truth& truth) {
+  RecognitionEvaluation evaluation;
+  evaluation.num_candidates = findings.num_candidates;
+  evaluation.num_accepted = static_cast<int>(findings.accepted.size());
+  if (truth.places) {
+    evaluation.curve = evaluate::precision_recall(*truth.places, as_matches(findings.matches),
+                                                  findings.window_frames);
+    evaluation.accepted = evaluate::count_accepted(*truth.places, as_matches(findings.accepted),
+                                                   findings.window_frames);
+  }
+  if (!truth.impostors.empty()) {
+    evaluation.num_impostors = evaluate::count_accepted_impostors(
+        truth.impostors, as_matches(findings.accepted), findings.window_frames);
+  }
+  return evaluation;
+}
+
+Figure describer_figure(const describe::Config& config, std::uint64_t checksum) {
+  const std::string what = config.method == describe::Method::kHog
+                               ? "hog"
+                               : std::filesystem::path(config.network).filename().string();
+  return {"describer", fmt::format("{:016x}, {}", checksum, what)};
+}
+
+std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
+  std::vector<Figure> figures = figures_of_trajectory(evaluation);
+  for (const auto& [num_edges, drift] : evaluation.drift_model)
+    figures.push_back(figure_of_drift(num_edges, drift));
+  const auto& loops = evaluation.loops;
+  figures.push_back(figure("candidates judged", "{}", evaluation.num_candidates));
+  figures.push_back(figure("loops accepted: right / wrong / unknown", "{} / {} / {}",
+                           loops.num_right, loops.num_wrong, loops.num_unknown));
+  if (evaluation.num_of_known_map > 0) {
+    figures.push_back(figure("candidates of the known map / accepted", "{} / {}",
+                             evaluation.num_of_known_map, evaluation.num_known_places));
+  }
+  if (evaluation.num_impostors_matching) {
+    figures.push_back(figure("of the wrong ones, impostors", "{}", loops.num_impostors));
+    figures.push_back(figure("impostors among the candidates with enough matches", "{}",
+                             *evaluation.num_impostors_matching));
+  }
+  if (loops.num_revisits > 0) {
+    figures.push_back(figure("revisits closed", "{} of {}", loops.num_closed, loops.num_revisits));
+  }
+  if (const auto& again = evaluation.found_again; !again.loops.empty()) {
+    figures.push_back(figure("lost and found again: right / wrong / unknown", "{} / {} / {}",
+                             again.num_right, again.num_wrong, again.num_unknown));
+    if (loops.num_revisits > 0) {
+      figures.push_back(figure("revisits closed, or found again in", "{} of {}",
+                               evaluation.num_rejoined, loops.num_revisits));
+    }
+  }
+  if (evaluation.num_refused_by_graph + evaluation.num_withdrawn > 0) {
+    figures.push_back(figure("loops refused by the pose graph: at once / later", "{} / {}",
+                             evaluation.num_refused_by_graph, evaluation.num_withdrawn));
+  }
+  return figures;
+}
+
+std::vector<Figure> figures_of(const RecognitionEvaluation& evaluation) {
+  std::vector<Figure> figures = {figure("candidates judged", "{}", evaluation.num_candidates)};
+  if (const auto& counts = evaluation.accepted) {
+    figures.push_back(figure("accepted: right / wrong / near", "{} / {} / {}", counts->num_right,
+                             counts->num_wrong, counts->num_near));
+  } else {
+    figures.push_back(figure("accepted", "{}", evaluation.num_accepted));
+  }
+  if (evaluation.num_impostors) {
+    figures.push_back(figure("of the wrong ones, impostors", "{}", *evaluation.num_impostors));
+  }
+  if (const auto& curve = evaluation.curve) {
+    figures.push_back(figure("queries, of these with a loop", "{}, {}", curve->num_queries,
+                             curve->num_with_loop));
+    figures.push_back(figure("AUC", "{:.4f}", curve->auc));
+    figures.push_back(
+        figure("recall at 100 % precision", "{:.4f}", curve->recall_at_full_precision));
+    figures.push_back(figure("precision at recall .35, .70", "{:.4f}, {:.4f}",
+                             curve->precision_at_recall_35, curve->precision_at_recall_70));
+  }
+  return figures;
+}
+
+}  // namespace samewhere::run
