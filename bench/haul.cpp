@@ -77,7 +77,7 @@ class Haul {
   Haul(const pipeline::Config& config, const std::string& map_file)
       : source_(run::open_source(config)),
         slam_(run::with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
-              hooks()) {
+              keep_map()) {
     if (!map_file.empty()) saver_.emplace(map_file, config, slam_.describer_checksum());
   }
 
@@ -131,16 +131,14 @@ class Haul {
   }
 
  private:
-  pipeline::SlamHooks hooks() {
-    pipeline::SlamHooks hooks;
-    hooks.keep_map = [this](const scene::MapVersion& map, const pipeline::MapNews& news) {
+  pipeline::KeepMap keep_map() {
+    return [this](const scene::MapVersion& map, const pipeline::MapNews& news) {
       num_keyframes_ = map.keyframes.size();
       num_live_keyframes_ = num_live(map.keyframes);
       num_landmarks_ = map.landmarks.size();
       num_loops_ = map.loops.size();
       if (saver_) saver_->save(map, news);
     };
-    return hooks;
   }
 
   void feed(const core::Frame& frame) {

@@ -13,6 +13,7 @@
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/pipeline/slam_test_hooks.hpp>
 #include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
@@ -69,9 +70,11 @@ void nudge(pipeline::LoopAnswer& answer, bool& is_nudged) {
   is_nudged = true;
 }
 
-pipeline::SlamHooks never_lied_to(const Liar& liar, Witness& witness) {
-  pipeline::SlamHooks hooks;
-  hooks.lie = [&](const auto& question, auto& answer) { liar.answer_honestly(question, answer); };
+pipeline::SlamTestHooks never_lied_to(const Liar& liar, Witness& witness) {
+  pipeline::SlamTestHooks hooks;
+  hooks.alter_loops = [&](const auto& question, auto& answer) {
+    liar.answer_honestly(question, answer);
+  };
   hooks.keep_map = [&](const auto& map, const auto&) { witness.see_honest(map); };
   return hooks;
 }
@@ -86,8 +89,8 @@ Outcome walk_twice(const pipeline::Config& config, int lie_after, bool is_contro
   const pipeline::Config in_frames = run::with_window_in_frames(config, source->info());
   using pipeline::Slam;
   bool is_nudged = false;
-  pipeline::SlamHooks lied_to;
-  lied_to.lie = [&](const auto& question, auto& answer) {
+  pipeline::SlamTestHooks lied_to;
+  lied_to.alter_loops = [&](const auto& question, auto& answer) {
     const pipeline::LoopAnswer of_judge = answer;
     liar.answer(question, answer);
     if (!is_control) return;

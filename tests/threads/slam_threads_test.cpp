@@ -18,6 +18,7 @@
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/pipeline/slam_test_hooks.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/run/map_saver.hpp>
 
@@ -118,14 +119,15 @@ struct Found {
 };
 
 Found found_by(const std::vector<core::Frame>& frames, const Config& config,
-               const core::Dawdle& dawdle = {}, DepthFrom depth_from = DepthFrom::kSensor) {
+               const core::StageHook& hook = {}, DepthFrom depth_from = DepthFrom::kSensor) {
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("samewhere_slam_threads_" + std::to_string(getpid()) + ".sw");
   std::filesystem::remove(path);
   std::optional<run::MapSaver> saver;
   Slam slam(config, depth_from,
-            {.keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
-             .dawdle = dawdle});
+            SlamTestHooks{
+                .keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
+                .before_message = hook});
   saver.emplace(path, config, slam.describer_checksum());
   for (const auto& frame : frames) slam.feed(frame);
   slam.finish();
@@ -152,7 +154,7 @@ void expect_same(const Found& found, const Found& expected, const std::string& h
 }
 
 // Sleeps for up to 30 ms, each message as long as the seed wants it.
-core::Dawdle asleep(std::uint64_t seed) {
+core::StageHook asleep(std::uint64_t seed) {
   return [seed](std::uint64_t number) {
     core::Random random(core::seed_of(seed, "dawdle", number));
     std::this_thread::sleep_for(std::chrono::milliseconds(random.index(31)));
@@ -182,7 +184,7 @@ class Load {
   std::deque<std::thread> threads_;
 };
 
-TEST(SlamThreads, FindToTheByteWhatOneThreadFindsHoweverTheyDawdle) {
+TEST(SlamThreads, FindToTheByteWhatOneThreadFindsHoweverLongTheyTake) {
   const std::vector<core::Frame> frames = walk();
   const Found in_turn = found_by(frames, config_of(false));
   EXPECT_GT(in_turn.num_loops, 0U) << "without a correction this shows little";
@@ -239,15 +241,15 @@ TEST(SlamThreads, WithoutDepthTheyFindToTheByteWhatOneThreadFinds) {
 
 // A later session in the map of the first half of the way, as trajectory and ledger.
 std::string found_in_known_map(const scene::StoredMap& known, const Config& config,
-                               const core::Dawdle& dawdle = {}) {
-  Slam slam(config, known, Slam::Use::kExtend, {.dawdle = dawdle});
+                               const core::StageHook& hook = {}) {
+  Slam slam(config, known, Slam::Use::kExtend, SlamTestHooks{.before_message = hook});
   std::uint64_t number = 0;
   for (core::Frame frame : walk()) {
     frame.id = core::FrameId(number++, slam.session());
     slam.feed(frame);
   }
   slam.finish();
-  EXPECT_GT(slam.map().keyframes.size(), known.map.keyframes.size()) << "nobody was found";
+  EXPECT_GT(slam.map().keyframes.size(), known.map.keyframes.size()) << "it was not relocalized";
   return core::tum_text(trajectory_of(slam.map(), slam.frames())) +
          report::loops_json(slam.ledger());
 }
@@ -264,7 +266,7 @@ TEST(SlamThreads, InAKnownMapTheyFindToTheByteWhatOneThreadFinds) {
   EXPECT_EQ(found_in_known_map(known, config_of(true), asleep(4)), in_turn);
 }
 
-void run_to_the_end(const std::vector<core::Frame>& frames, const SlamHooks& hooks) {
+void run_to_the_end(const std::vector<core::Frame>& frames, const SlamTestHooks& hooks) {
   Slam slam(config_of(true), DepthFrom::kSensor, hooks);
   for (const auto& frame : frames) slam.feed(frame);
   slam.finish();
@@ -279,24 +281,26 @@ TEST(SlamThreads, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
     };
     EXPECT_THROW(run_to_the_end(frames, {.keep_map = fail}), core::InputError) << num_kept;
   }
-  Slam broken(config_of(false), DepthFrom::kSensor,
-              {.keep_map = [](const auto&, const auto&) { throw core::InputError("no room"); },
-               .dawdle = {}});
+  Slam broken(
+      config_of(false), DepthFrom::kSensor,
+      SlamTestHooks{.keep_map = [](const auto&, const auto&) { throw core::InputError("no room"); },
+                    .before_message = {}});
   EXPECT_THROW(broken.feed(frames[0]), core::InputError);
   EXPECT_THROW(broken.feed(frames[1]), core::ContractError) << "after an error nothing follows";
   // message by message, in mapping or in loop closing
   for (const std::uint64_t last : {0, 1, 2, 3, 8}) {
-    const core::Dawdle fail = [last](std::uint64_t number) {
+    const core::StageHook fail = [last](std::uint64_t number) {
       if (number == last) throw std::runtime_error("broken");
     };
-    EXPECT_THROW(run_to_the_end(frames, {.dawdle = fail}), std::runtime_error) << last;
+    EXPECT_THROW(run_to_the_end(frames, {.before_message = fail}), std::runtime_error) << last;
   }
 }
 
 TEST(SlamThreads, DestructionInTheMiddleOfItsWorkEnds) {
   const std::vector<core::Frame> frames = walk();
   for (const std::size_t num_frames : {0, 1, 2, 7, 20}) {
-    Slam slam(config_of(true), DepthFrom::kSensor, {.dawdle = asleep(num_frames)});
+    Slam slam(config_of(true), DepthFrom::kSensor,
+              SlamTestHooks{.before_message = asleep(num_frames)});
     for (std::size_t i = 0; i < num_frames; ++i) slam.feed(frames[i]);
   }
 }

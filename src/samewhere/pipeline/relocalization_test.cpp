@@ -1,4 +1,4 @@
-// Lost, in a map of one's own or of an earlier session.
+// Relocalization in the map of the session, or of an earlier one.
 
 #include <algorithm>
 
@@ -68,7 +68,7 @@ bool is_right(const core::Rigid3& world_from_body, const Walk& walk, std::size_t
          core::angle_rad(apart.rotation) < kSamePlace_rad;
 }
 
-TEST(Relocalisation, AWalkFindsItselfInItsOwnMapAndLeavesItAsItIs) {
+TEST(Relocalization, LocalizesInItsOwnMapAndLeavesItUnchanged) {
   const Config config = config_of("twin:office-loop?seed=7", 40);
   const Walk walk = walk_of(config);
   Slam first(config);
@@ -88,12 +88,12 @@ TEST(Relocalisation, AWalkFindsItselfInItsOwnMapAndLeavesItAsItIs) {
     ++num_measured;
     EXPECT_TRUE(is_right(*poses[i], walk, 20 + i)) << "frame " << 20 + i;
   }
-  EXPECT_GE(num_measured, 15) << "of 20: the first few are there to make sure";
+  EXPECT_GE(num_measured, 15) << "of 20: the first views decide between hypotheses";
   EXPECT_EQ(second.map().number, first.map().number) << "the map stays as it is";
   EXPECT_EQ(second.map().keyframes.size(), first.map().keyframes.size());
 }
 
-TEST(Relocalisation, ALaterSessionGrowsTheMapFromWhereItIsRecognised) {
+TEST(Relocalization, ALaterSessionExtendsTheMapOnceRelocalized) {
   const Config config = config_of("twin:office-loop?seed=7", 40);
   const Walk walk = walk_of(config);
   Slam first(config);
@@ -109,10 +109,11 @@ TEST(Relocalisation, ALaterSessionGrowsTheMapFromWhereItIsRecognised) {
   EXPECT_EQ(second.map().keyframes.back().view.frame.session(), 1);
   const auto poses = poses_of(second);
   ASSERT_TRUE(poses.back().has_value());
-  EXPECT_TRUE(is_right(*poses.back(), walk, walk.frames.size() - 1)) << "in the first one's world";
+  EXPECT_TRUE(is_right(*poses.back(), walk, walk.frames.size() - 1))
+      << "in the world of the first session";
 }
 
-TEST(Relocalisation, AnotherBuildingIsNotTakenForTheMap) {
+TEST(Relocalization, RejectsAnotherBuilding) {
   const Config config = config_of("twin:office-loop?seed=7", 30);
   const Walk walk = walk_of(config);
   Slam first(config);
@@ -124,10 +125,10 @@ TEST(Relocalisation, AnotherBuildingIsNotTakenForTheMap) {
     second.feed(with_id(elsewhere.frames[i], i, 1));
   second.finish();
   for (const auto& frame : second.frames()) EXPECT_FALSE(frame.is_measured) << frame.frame;
-  EXPECT_FALSE(second.ledger().empty()) << "every look-alike was judged";
+  EXPECT_FALSE(second.ledger().empty()) << "every look-alike place has a verdict";
 }
 
-TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
+TEST(Relocalization, RelocalizesAKidnappedCamera) {
   const Config config = config_of("twin:office-loop?seed=7", 90);
   const Walk walk = walk_of(config);
   std::vector<std::size_t> positions;
@@ -136,7 +137,7 @@ TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
   Slam slam(config);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     core::Frame frame = with_id(walk.frames[positions[i]], i, 0);
-    if (i >= walk.frames.size()) frame.stamp_s += 5.0;  // carried, not beamed
+    if (i >= walk.frames.size()) frame.stamp_s += 5.0;  // time to be carried there
     slam.feed(frame);
   }
   slam.finish();
@@ -147,10 +148,10 @@ TEST(Relocalisation, WhoIsKidnappedResumesWhereHeIs) {
     ++num_measured;
     EXPECT_TRUE(is_right(*poses[i], walk, positions[i])) << "frame " << positions[i] << " again";
   }
-  EXPECT_GE(num_measured, 10) << "of 15: the first few are there to make sure";
+  EXPECT_GE(num_measured, 10) << "of 15: the first views decide between hypotheses";
 }
 
-TEST(Relocalisation, WhoIsKidnappedToARoomThatTheMapDoesNotKnowIsFoundNowhere) {
+TEST(Relocalization, DoesNotRelocalizeInAnUnmappedRoom) {
   const Config config = config_of("twin:office-loop?seed=7", 90);
   const Walk walk = walk_of(config);
   const Walk elsewhere = walk_of(config_of("twin:office-loop?seed=8", 25));
@@ -160,7 +161,7 @@ TEST(Relocalisation, WhoIsKidnappedToARoomThatTheMapDoesNotKnowIsFoundNowhere) {
   const std::size_t num_before = index;
   for (const auto& other : elsewhere.frames) {
     core::Frame frame = with_id(other, index++, 0);
-    frame.stamp_s += walk.frames.back().stamp_s + 60.0;  // anywhere in the map is within reach
+    frame.stamp_s += walk.frames.back().stamp_s + 60.0;  // the whole map is reachable
     slam.feed(frame);
   }
   slam.finish();
@@ -168,7 +169,7 @@ TEST(Relocalisation, WhoIsKidnappedToARoomThatTheMapDoesNotKnowIsFoundNowhere) {
     EXPECT_EQ(slam.frames()[i].is_measured, i < num_before) << "frame " << i;
 }
 
-TEST(Relocalisation, NobodyIsFoundWhereHeCannotHaveGot) {
+TEST(Relocalization, RejectsPosesThatAreNotReachable) {
   const Config config = config_of("twin:office-loop?seed=7", 90);
   const Walk walk = walk_of(config);
   Slam slam(config);
@@ -181,12 +182,12 @@ TEST(Relocalisation, NobodyIsFoundWhereHeCannotHaveGot) {
                         walk.truth.back().world_from_camera.translation)
                            .norm();
   ASSERT_GT(way_m, 0.5 + config.track.relocalization.max_speed_m_s * 5.0 / 15.0)
-      << "or he may be back";
+      << "else it is reachable";
   for (std::size_t i = num_before; i < index; ++i)
     EXPECT_FALSE(slam.frames()[i].is_measured) << "frame " << i;
 }
 
-TEST(Relocalisation, WithoutDepthWhoIsKidnappedResumesWhereHeWas) {
+TEST(Relocalization, RelocalizesAKidnappedMonocularCamera) {
   constexpr std::size_t kFirst = 40;
   constexpr std::size_t kNumAgain = 10;
   const Config config = config_of("twin:office-loop?seed=7&camera=mono", 90);
@@ -201,7 +202,7 @@ TEST(Relocalisation, WithoutDepthWhoIsKidnappedResumesWhereHeWas) {
   const auto poses = poses_of(slam);
   ASSERT_TRUE(poses[kFirst] && poses[walk.frames.size() - 1]);
   const auto between = [&](std::size_t a, std::size_t b) { return inverse(*poses[a]) * *poses[b]; };
-  // no metres here; another place than his own would be off by much of the way that he was carried
+  // no metric scale; a wrong place would be off by much of the distance between both
   const double way = between(kFirst, walk.frames.size() - 1).translation.norm();
   int num_measured = 0;
   for (std::size_t i = walk.frames.size(); i < positions.size(); ++i) {
@@ -213,8 +214,8 @@ TEST(Relocalisation, WithoutDepthWhoIsKidnappedResumesWhereHeWas) {
   EXPECT_GE(num_measured, 8) << "of " << kNumAgain;
 }
 
-// One camera, carried after a second into another building.
-class Abducted : public testing::Test {
+// A monocular camera, moved after a second to another building.
+class MovedToAnotherBuilding : public testing::Test {
  protected:
   static constexpr int kNumBefore = 25;
   static constexpr int kNumAfter = 60;
@@ -242,11 +243,11 @@ class Abducted : public testing::Test {
   Walk after_ = walk_of(config_of("twin:twin-corridors?seed=7&camera=mono", kNumAfter));
 };
 
-TEST_F(Abducted, AMapThatHasHardlyBegunIsGivenUpForANewOne) {
+TEST_F(MovedToAnotherBuilding, ASmallMapIsDiscardedByReinitialization) {
   Slam slam(config_, DepthFrom::kMotion);
   walk_on(slam);
-  EXPECT_EQ(num_before(slam), 0) << "poses of another world";
-  EXPECT_GE(slam.num_starts_given_up(), 1);
+  EXPECT_EQ(num_before(slam), 0) << "poses of the discarded map";
+  EXPECT_GE(slam.num_reinitializations(), 1);
   EXPECT_GE(num_after(slam), 40) << "of " << kNumAfter;
   core::Trajectory trajectory = trajectory_of(slam.map(), slam.frames());
   for (auto& pose : trajectory) pose.stamp_s -= kNumBefore / 15.0;
@@ -259,13 +260,13 @@ TEST_F(Abducted, AMapThatHasHardlyBegunIsGivenUpForANewOne) {
   }
 }
 
-TEST_F(Abducted, AMapThatIsToBeKeptIsKept) {
+TEST_F(MovedToAnotherBuilding, AMapThatIsNotProvisionalIsKept) {
   config_.track.initialization.provisional_keyframes = 0;
   Slam slam(config_, DepthFrom::kMotion);
   walk_on(slam);
   EXPECT_GE(num_before(slam), 10);
-  EXPECT_EQ(num_after(slam), 0) << "nobody knows where the other building is";
-  EXPECT_EQ(slam.num_starts_given_up(), 0);
+  EXPECT_EQ(num_after(slam), 0) << "the other building is not in the map";
+  EXPECT_EQ(slam.num_reinitializations(), 0);
 }
 
 }  // namespace

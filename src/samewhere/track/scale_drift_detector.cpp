@@ -4,19 +4,19 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/median.hpp>
-#include <samewhere/track/scale_watch.hpp>
+#include <samewhere/track/scale_drift_detector.hpp>
 
 namespace samewhere::track {
 namespace {
 
-constexpr double kMiddle = 512.0;  // the step of 1
+constexpr double kMiddle = 512.0;  // bin of 1
 constexpr double kStep = 0.05;     // of the logarithm
-constexpr double kWindow_s = 2.0;  // whose medians are compared with the usual ones
+constexpr double kWindow_s = 2.0;  // its medians are compared with the usual ones
 constexpr double kFullWindow_s = 1.5;
 constexpr double kLasting_s = 1.5;
-constexpr double kLongestGap_s = 0.5;  // between frames that tell a speed
+constexpr double kLongestGap_s = 0.5;  // between frames; longer ones give no speed
 constexpr int kMinUsual = 50;          // frames
-constexpr double kMinFlow_hz = 0.05;   // depths per second below which the camera stands
+constexpr double kMinFlow_hz = 0.05;   // speed / depth of a moving camera
 constexpr double kMaxFlowChange = 3.0;
 
 }  // namespace
@@ -29,7 +29,7 @@ void LogMedian::add(double value) {
 }
 
 double LogMedian::value() const {
-  core::require(size_ > 0, "there are values of which one is in the middle");
+  core::require(size_ > 0, "a median needs a value");
   int num_below = 0;
   std::size_t slot = 0;
   while (2 * (num_below + static_cast<int>(counts_[slot])) < size_)
@@ -37,9 +37,9 @@ double LogMedian::value() const {
   return std::exp((static_cast<double>(slot) + 0.5 - kMiddle) * kStep);
 }
 
-void ScaleWatch::forget() { *this = ScaleWatch(max_change_); }
+void ScaleDriftDetector::reset() { *this = ScaleDriftDetector(max_change_); }
 
-std::optional<double> ScaleWatch::see(double stamp_s, double step, double depth) {
+std::optional<double> ScaleDriftDetector::update(double stamp_s, double step, double depth) {
   if (max_change_ <= 1.0) return std::nullopt;
   const double gap_s = last_stamp_s_ ? stamp_s - *last_stamp_s_ : 0.0;
   last_stamp_s_ = stamp_s;
@@ -54,11 +54,11 @@ std::optional<double> ScaleWatch::see(double stamp_s, double step, double depth)
   if (stamp_s - window_.front().stamp_s < kFullWindow_s) return std::nullopt;
   std::vector<double> speeds;
   std::vector<double> depths;
-  for (const Seen& seen : window_) {
+  for (const Sample& seen : window_) {
     speeds.push_back(seen.speed);
     depths.push_back(seen.depth);
   }
-  const Seen now{stamp_s, *core::median(std::move(speeds)), *core::median(std::move(depths))};
+  const Sample now{stamp_s, *core::median(std::move(speeds)), *core::median(std::move(depths))};
   const auto factor = change(now);
   learn(now);
   if (!factor) {
@@ -69,14 +69,14 @@ std::optional<double> ScaleWatch::see(double stamp_s, double step, double depth)
   return stamp_s - *changed_since_s_ >= kLasting_s ? factor : std::nullopt;
 }
 
-void ScaleWatch::learn(const Seen& now) {
+void ScaleDriftDetector::learn(const Sample& now) {
   if (now.speed < kMinFlow_hz * now.depth) return;
   usual_speed_.add(now.speed);
   usual_depth_.add(now.depth);
 }
 
-// The smaller of both changes: as much as both say.
-std::optional<double> ScaleWatch::change(const Seen& now) const {
+// The smaller of both changes: what both support.
+std::optional<double> ScaleDriftDetector::change(const Sample& now) const {
   if (usual_speed_.size() < kMinUsual) return std::nullopt;
   const double by_speed = std::log(now.speed / usual_speed_.value());
   const double by_depth = std::log(now.depth / usual_depth_.value());
@@ -86,12 +86,13 @@ std::optional<double> ScaleWatch::change(const Seen& now) const {
   return std::exp(by_speed > 0.0 ? least : -least);
 }
 
-void note_doubt(std::vector<ScaleDoubt>& doubts, core::FrameId frame, double factor) {
-  if (doubts.empty() || doubts.back().last.index() + 1 != frame.index())
-    doubts.push_back({frame, frame, factor});
-  ScaleDoubt& doubt = doubts.back();
-  doubt.last = frame;
-  if (std::abs(std::log(factor)) > std::abs(std::log(doubt.factor))) doubt.factor = factor;
+void add_to_intervals(std::vector<ScaleDriftInterval>& intervals, core::FrameId frame,
+                      double factor) {
+  if (intervals.empty() || intervals.back().last.index() + 1 != frame.index())
+    intervals.push_back({frame, frame, factor});
+  ScaleDriftInterval& interval = intervals.back();
+  interval.last = frame;
+  if (std::abs(std::log(factor)) > std::abs(std::log(interval.factor))) interval.factor = factor;
 }
 
 }  // namespace samewhere::track

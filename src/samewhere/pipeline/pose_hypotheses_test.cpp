@@ -6,7 +6,7 @@
 #include <samewhere/features/test_world.hpp>
 #include <samewhere/map/mapper.hpp>
 #include <samewhere/map/test_map.hpp>
-#include <samewhere/pipeline/place_finder.hpp>
+#include <samewhere/pipeline/pose_hypotheses.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -19,7 +19,7 @@ bool anywhere(const core::FramePose& /*pose*/) { return true; }
 
 const core::Rigid3 kFar{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
 
-// So many of the points look like nothing in the world.
+// This share of the points gets random descriptors.
 features::TestWorld partly_different(features::TestWorld world, double share) {
   core::Random random(9);
   for (auto& descriptor : world.descriptors) {
@@ -29,7 +29,7 @@ features::TestWorld partly_different(features::TestWorld world, double share) {
   return world;
 }
 
-// One place twice in one map, but for a share of the points.
+// One place twice in one map; a share of the points differs.
 scene::MapVersion map_with_twins(const features::TestWorld& here, double different) {
   scene::MapVersion map;
   map = apply(map, map::start_map(map, features::test_view(here, 0, {}), {}));
@@ -37,83 +37,83 @@ scene::MapVersion map_with_twins(const features::TestWorld& here, double differe
                         map, features::test_view(partly_different(here, different), 1, {}), kFar));
 }
 
-class TestPlaceFinder : public testing::Test {
+class PoseHypothesesTest : public testing::Test {
  protected:
-  // View `frame` of somebody who stands still in front of what the first keyframe shows.
-  std::optional<FoundPlace> look(const scene::MapVersion& map, int frame,
-                                 const std::vector<Place>& places,
-                                 const IsWithinReach& is_within_reach = anywhere) {
-    return finder_.look(features::test_view(world_, 10 + frame, {}), map, places, {kNumViews},
-                        is_within_reach);
+  // View `frame` of a static camera that shows what the first keyframe shows.
+  std::optional<RelocalizedPose> evaluate(const scene::MapVersion& map, int frame,
+                                          const std::vector<Place>& places,
+                                          const IsReachable& is_reachable = anywhere) {
+    return hypotheses_.evaluate(features::test_view(world_, 10 + frame, {}), map, places,
+                                {kNumViews}, is_reachable);
   }
 
   features::TestWorld world_ = features::test_world(5);
   Config config_;
   track::Tracker tracker_{{config_.track, config_.features, config_.optimize, 0}};
-  PlaceFinder finder_{config_, tracker_};
+  PoseHypotheses hypotheses_{config_, tracker_};
   std::vector<Place> both_ = {{kThere, core::Rigid3{}, true}, {kHere, core::Rigid3{}, true}};
 };
 
-TEST_F(TestPlaceFinder, APlaceThatTheMapHasTwiceIsNeverFound) {
+TEST_F(PoseHypothesesTest, NeverAcceptsAPlaceThatTheMapHasTwice) {
   const scene::MapVersion map = map_with_twins(world_, 0.0);
-  for (int i = 0; i < 4 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  for (int i = 0; i < 4 * kNumViews; ++i) EXPECT_FALSE(evaluate(map, i, both_)) << "view " << i;
 }
 
-TEST_F(TestPlaceFinder, WhereTheTwinsDifferTheRightOneIsFoundOnceEnoughViewsHaveSpoken) {
+TEST_F(PoseHypothesesTest, AcceptsTheBetterOfTwoLookAlikePlacesAfterEnoughViews) {
   const scene::MapVersion map = map_with_twins(world_, 0.5);
-  for (int i = 0; i < kNumViews - 1; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
-  const auto found = look(map, kNumViews - 1, both_);
+  for (int i = 0; i < kNumViews - 1; ++i) EXPECT_FALSE(evaluate(map, i, both_)) << "view " << i;
+  const auto found = evaluate(map, kNumViews - 1, both_);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
   EXPECT_LT(found->track.pose.reference_from_frame.translation.norm(), 0.02);
 }
 
-TEST_F(TestPlaceFinder, ARivalThatNobodyMentionsAnyMoreStillCounts) {
+TEST_F(PoseHypothesesTest, KeepsACompetingHypothesisThatIsNoLongerACandidate) {
   const scene::MapVersion map = map_with_twins(world_, 0.0);
   const std::vector<Place> one = {both_[1]};
-  EXPECT_FALSE(look(map, 0, both_));
-  for (int i = 1; i < 4 * kNumViews; ++i) EXPECT_FALSE(look(map, i, one)) << "view " << i;
+  EXPECT_FALSE(evaluate(map, 0, both_));
+  for (int i = 1; i < 4 * kNumViews; ++i) EXPECT_FALSE(evaluate(map, i, one)) << "view " << i;
 }
 
-TEST_F(TestPlaceFinder, WhoWalksOutOfTheLookalikeIsFound) {
+TEST_F(PoseHypothesesTest, AcceptsAHypothesisAfterTheCameraLeavesTheLookAlikePlace) {
   const scene::MapVersion map = map_with_twins(world_, 0.0);
-  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(evaluate(map, i, both_)) << "view " << i;
   const scene::MapVersion different = map_with_twins(world_, 0.7);
-  std::optional<FoundPlace> found;
-  for (int i = 0; i < 2 * kNumViews && !found; ++i) found = look(different, 20 + i, {});
-  ASSERT_TRUE(found) << "what he saw in the look-alike is forgotten in the end";
+  std::optional<RelocalizedPose> found;
+  for (int i = 0; i < 2 * kNumViews && !found; ++i) found = evaluate(different, 20 + i, {});
+  ASSERT_TRUE(found) << "the evidence of the look-alike place is dropped after some views";
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
 }
 
-TEST_F(TestPlaceFinder, APlaceBeyondReachIsNoRival) {
+TEST_F(PoseHypothesesTest, IgnoresAPlaceThatIsNotReachable) {
   const scene::MapVersion map = map_with_twins(world_, 0.0);
-  const IsWithinReach near_here = [](const core::FramePose& pose) {
+  const IsReachable near_here = [](const core::FramePose& pose) {
     return pose.reference_keyframe == kHere;
   };
-  std::optional<FoundPlace> found;
-  for (int i = 0; i < kNumViews; ++i) found = look(map, i, both_, near_here);
+  std::optional<RelocalizedPose> found;
+  for (int i = 0; i < kNumViews; ++i) found = evaluate(map, i, both_, near_here);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
 }
 
-// The judge recognises it, but nothing of what the map has there can be tracked.
-TEST_F(TestPlaceFinder, APlaceThatIsRecognisedButCannotBeTrackedIsARivalAsLongAsItIsRecognised) {
+// The loop verifier recognizes it, but no landmark of the map can be tracked there.
+TEST_F(PoseHypothesesTest, ARecognizedPlaceThatCannotBeTrackedCompetesWhileItIsRecognized) {
   const scene::MapVersion map = map_with_twins(world_, 1.0);
-  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(evaluate(map, i, both_)) << "view " << i;
   std::vector<Place> unrecognised = both_;
   unrecognised[0].is_recognised = false;
-  const auto found = look(map, 2 * kNumViews, unrecognised);
+  const auto found = evaluate(map, 2 * kNumViews, unrecognised);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
 }
 
-TEST_F(TestPlaceFinder, WhatIsRecognisedBeyondReachIsNoRivalEvenIfItCannotBeTracked) {
+TEST_F(PoseHypothesesTest, IgnoresARecognizedPlaceThatIsNotReachableAndCannotBeTracked) {
   const scene::MapVersion map = map_with_twins(world_, 1.0);
-  const IsWithinReach near_here = [](const core::FramePose& pose) {
+  const IsReachable near_here = [](const core::FramePose& pose) {
     return pose.reference_keyframe == kHere;
   };
-  std::optional<FoundPlace> found;
-  for (int i = 0; i < kNumViews; ++i) found = look(map, i, both_, near_here);
+  std::optional<RelocalizedPose> found;
+  for (int i = 0; i < kNumViews; ++i) found = evaluate(map, i, both_, near_here);
   EXPECT_TRUE(found);
 }
 
@@ -133,7 +133,7 @@ void append_features(features::Features& features, const features::Features& mor
   }
 }
 
-// Without all but a share of the features.
+// With a share of the features.
 features::View thinned(const features::View& view, double share) {
   auto features = std::make_shared<features::Features>();
   features->descriptors = cv::Mat(0, 32, CV_8U);
@@ -143,7 +143,7 @@ features::View thinned(const features::View& view, double share) {
   return thin;
 }
 
-// As a pane of glass shows what is behind it, too.
+// As glass shows the scene behind it, too.
 features::View shining_through(const features::View& view, const features::View& behind) {
   auto features = std::make_shared<features::Features>();
   features->descriptors = cv::Mat(0, 32, CV_8U);
@@ -154,28 +154,29 @@ features::View shining_through(const features::View& view, const features::View&
   return both;
 }
 
-TEST_F(TestPlaceFinder, APlaceOfWhichTheMapKnowsLittleIsHeldAgainstWhatItKnows) {
+TEST_F(PoseHypothesesTest, ComparesInliersPerVisibleLandmark) {
   scene::MapVersion map;
   map = apply(map, map::start_map(map, thinned(features::test_view(world_, 0, {}), 0.55), {}));
   map = apply(map,
               map::start_map(map, features::test_view(partly_different(world_, 0.1), 1, {}), kFar));
   for (int i = 0; i < 4 * kNumViews; ++i)
-    EXPECT_FALSE(look(map, i, both_)) << "view " << i << ": the look-alike has more inliers";
+    EXPECT_FALSE(evaluate(map, i, both_))
+        << "view " << i << ": the look-alike place has more inliers";
 }
 
-// Less than half of what the look-alike shows: they cannot be held against each other.
-TEST_F(TestPlaceFinder, APlaceOfWhichTheMapKnowsTooLittleIsARivalAsLongAsItIsRecognised) {
+// Less than half of the landmarks of the look-alike place: the two are not comparable.
+TEST_F(PoseHypothesesTest, ARecognizedPlaceWithTooFewLandmarksCompetesWhileItIsRecognized) {
   scene::MapVersion map;
   map = apply(map, map::start_map(map, thinned(features::test_view(world_, 0, {}), 0.3), {}));
   map = apply(map,
               map::start_map(map, features::test_view(partly_different(world_, 0.1), 1, {}), kFar));
-  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
-  EXPECT_TRUE(look(map, 2 * kNumViews, {both_[0]})) << "or this shows nothing";
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(evaluate(map, i, both_)) << "view " << i;
+  EXPECT_TRUE(evaluate(map, 2 * kNumViews, {both_[0]})) << "else this shows nothing";
 }
 
-TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
+TEST_F(PoseHypothesesTest, KeepsAHypothesisWhereItsMapEnds) {
   const core::Rigid3 turned{core::exp_so3({0.0, 0.7, 0.0}), {0.0, 0.0, 0.0}};
-  // the look-alike is known further than the place
+  // the map of the look-alike place reaches farther
   scene::MapVersion map;
   map = apply(map, map::start_map(map, features::test_view(world_, 0, {}), kFar));
   map = apply(map,
@@ -187,16 +188,15 @@ TEST_F(TestPlaceFinder, WhereItsMapEndsAPlaceIsNotRefuted) {
                                    {here, core::Rigid3{}, true}};
   for (int i = 0; i < 2 * kNumViews; ++i) {
     const core::Rigid3 turning{core::exp_so3({0.0, 0.07 * i, 0.0}), {0.0, 0.0, 0.0}};
-    EXPECT_FALSE(finder_.look(features::test_view(world_, 10 + i, turning), map,
-                              i == 0 ? both : std::vector<Place>{}, {kNumViews}, anywhere))
+    EXPECT_FALSE(hypotheses_.evaluate(features::test_view(world_, 10 + i, turning), map,
+                                      i == 0 ? both : std::vector<Place>{}, {kNumViews}, anywhere))
         << "view " << i;
   }
 }
 
 enum class Side { kLeft, kRight };
 
-// What lies to one side of who looks along z; and such a share of points there that nobody will see
-// again.
+// The points on one side of the z axis, and a share of points there that are not visible again.
 features::TestWorld one_side(const features::TestWorld& world, Side side, double junk_share) {
   const features::TestWorld junk = features::test_world(77);
   features::TestWorld half;
@@ -214,35 +214,35 @@ features::TestWorld one_side(const features::TestWorld& world, Side side, double
   return half;
 }
 
-TEST_F(TestPlaceFinder, APlaceWhoseMapEndsInTheMiddleOfTheViewIsHeldAgainstOthersWhereItDoesNot) {
+TEST_F(PoseHypothesesTest, ComparesInTheHalfOfTheViewThatBothMapsShow) {
   const features::View left = features::test_view(one_side(world_, Side::kLeft, 0.6), 0, {});
   const scene::MapVersion alone = apply({}, map::start_map({}, left, {}));
   const scene::MapVersion both =
       apply(alone, map::start_map(alone, features::test_view(world_, 1, {}), kFar));
-  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(both, i, both_)) << "view " << i;
-  finder_.forget();
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(evaluate(both, i, both_)) << "view " << i;
+  hypotheses_.reset();
   const scene::MapVersion different =
       apply(alone,
             map::start_map(alone, features::test_view(partly_different(world_, 0.7), 1, {}), kFar));
-  std::optional<FoundPlace> found;
-  for (int i = 0; i < kNumViews; ++i) found = look(different, i, both_);
-  ASSERT_TRUE(found) << "half a view tells, too";
+  std::optional<RelocalizedPose> found;
+  for (int i = 0; i < kNumViews; ++i) found = evaluate(different, i, both_);
+  ASSERT_TRUE(found) << "half a view is enough";
   EXPECT_EQ(found->track.pose.reference_keyframe, kHere);
 }
 
-TEST_F(TestPlaceFinder, WhereTheMapShowsTheOneLeftAndTheOtherRightNobodyCanTell) {
+TEST_F(PoseHypothesesTest, IsUndecidedWhereTheMapsShowDifferentHalvesOfTheView) {
   const features::View left = features::test_view(one_side(world_, Side::kLeft, 0.0), 0, {});
   const features::View right = features::test_view(one_side(world_, Side::kRight, 0.0), 1, {});
   scene::MapVersion map = apply({}, map::start_map({}, left, {}));
   map = apply(map, map::start_map(map, right, kFar));
-  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, both_)) << "view " << i;
-  finder_.forget();
-  std::optional<FoundPlace> found;
-  for (int i = 0; i < kNumViews; ++i) found = look(map, i, {both_[0]});
-  EXPECT_TRUE(found) << "or this shows nothing";
+  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(evaluate(map, i, both_)) << "view " << i;
+  hypotheses_.reset();
+  std::optional<RelocalizedPose> found;
+  for (int i = 0; i < kNumViews; ++i) found = evaluate(map, i, {both_[0]});
+  EXPECT_TRUE(found) << "else this shows nothing";
 }
 
-TEST_F(TestPlaceFinder, WhatWasTakenForAnotherPlaceAtFirstDoesNotHideWhatTheRightOneExplained) {
+TEST_F(PoseHypothesesTest, MergedHypothesesKeepTheBetterEvidence) {
   const core::Rigid3 aside{Eigen::Quaterniond::Identity(), {1.2, 0.0, 0.0}};
   scene::MapVersion map;
   map = apply(map, map::start_map(map, thinned(features::test_view(world_, 0, {}), 0.7), {}));
@@ -253,28 +253,29 @@ TEST_F(TestPlaceFinder, WhatWasTakenForAnotherPlaceAtFirstDoesNotHideWhatTheRigh
                                      {core::KeyframeId(2), core::Rigid3{}, true}};
   const features::View first = shining_through(
       features::test_view(world_, 10, {}), thinned(features::test_view(world_, 3, aside), 0.15));
-  const auto walk = [&](const std::vector<Place>& thought_of) {
-    std::optional<FoundPlace> found = finder_.look(first, map, thought_of, {kNumViews}, anywhere);
+  const auto walk = [&](const std::vector<Place>& candidates) {
+    std::optional<RelocalizedPose> found =
+        hypotheses_.evaluate(first, map, candidates, {kNumViews}, anywhere);
     for (int i = 1; i < 2 * kNumViews && !found; ++i) {
       const core::Rigid3 moved{Eigen::Quaterniond::Identity(), {0.1 * i, 0.0, 0.0}};
-      found =
-          finder_.look(features::test_view(world_, 10 + i, moved), map, {}, {kNumViews}, anywhere);
+      found = hypotheses_.evaluate(features::test_view(world_, 10 + i, moved), map, {}, {kNumViews},
+                                   anywhere);
     }
-    finder_.forget();
+    hypotheses_.reset();
     return found;
   };
   EXPECT_FALSE(walk(places));
-  EXPECT_TRUE(walk({places[0], places[1]})) << "or this shows nothing";
+  EXPECT_TRUE(walk({places[0], places[1]})) << "else this shows nothing";
 }
 
-class WeakSight : public TestPlaceFinder {
+class WeakView : public PoseHypothesesTest {
  protected:
-  WeakSight() : weak_(thinned(features::test_view(world_, 10, {}), 0.03)) {
+  WeakView() : weak_(thinned(features::test_view(world_, 10, {}), 0.03)) {
     map_ = apply(map_, map::start_map(map_, features::test_view(world_, 0, {}), {}));
   }
 
-  std::optional<FoundPlace> found(const std::vector<Place>& places, bool may_be_weak) {
-    return finder_.look(weak_, map_, places, {1, may_be_weak}, anywhere);
+  std::optional<RelocalizedPose> found(const std::vector<Place>& places, bool may_be_weak) {
+    return hypotheses_.evaluate(weak_, map_, places, {1, may_be_weak}, anywhere);
   }
 
   scene::MapVersion map_;
@@ -282,7 +283,7 @@ class WeakSight : public TestPlaceFinder {
   std::vector<Place> here_ = {{kHere, core::Rigid3{}, true}};
 };
 
-TEST_F(WeakSight, IsEnoughForAMomentOnly) {
+TEST_F(WeakView, IsAcceptedOnlyIfWeakPosesMayBe) {
   EXPECT_FALSE(found(here_, false));
   const auto place = found(here_, true);
   ASSERT_TRUE(place);
@@ -290,16 +291,17 @@ TEST_F(WeakSight, IsEnoughForAMomentOnly) {
   EXPECT_LT(place->track.pose.reference_from_frame.translation.norm(), 0.05);
 }
 
-TEST_F(WeakSight, IsNotEnoughWhereAnotherPlaceIsThoughtOf) {
+TEST_F(WeakView, IsNotAcceptedBesideAnotherHypothesis) {
   map_ = map_with_twins(world_, 0.0);
   for (int i = 0; i < kNumViews; ++i) EXPECT_FALSE(found(both_, true)) << "view " << i;
 }
 
-TEST_F(TestPlaceFinder, APlaceThatTheJudgeDidNotRecogniseIsARivalAndIsNotFound) {
+TEST_F(PoseHypothesesTest, AnUnrecognizedPlaceCompetesAndIsNotAccepted) {
   const scene::MapVersion map = map_with_twins(world_, 0.5);
   std::vector<Place> looks_alike = both_;
   looks_alike[1].is_recognised = false;
-  for (int i = 0; i < 2 * kNumViews; ++i) EXPECT_FALSE(look(map, i, looks_alike)) << "view " << i;
+  for (int i = 0; i < 2 * kNumViews; ++i)
+    EXPECT_FALSE(evaluate(map, i, looks_alike)) << "view " << i;
 }
 
 }  // namespace
