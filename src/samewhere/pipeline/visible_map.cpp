@@ -34,7 +34,7 @@ core::FramePose VisibleMap::by_odometry(const core::FramePose& pose,
   if (!has_odometry || newest == reference || version_.loops.empty()) return pose;
   const Chain chain{version_.number, newest, reference};
   if (!last_chain_ || last_chain_->first != chain)
-    last_chain_ = {chain, are_joined_by_loop(version_, newest, reference)};
+    last_chain_ = {chain, shortest_path_uses_loop(version_, newest, reference)};
   return last_chain_->second ? relative_to(newest, pose) : pose;
 }
 
