@@ -163,7 +163,7 @@ TEST(Slam, OneCameraStartsLateAndThenFollowsTheTruthUpToScale) {
   Config config = short_walk();
   config.source = "twin:office-loop?seed=5&camera=mono";
   const auto source = twin::open_twin(config.source, config.twin);
-  ASSERT_TRUE(is_scale_free(source->info()));
+  ASSERT_FALSE(source->info().has_depth);
   Slam slam(config, DepthFrom::kMotion);
   cv::setNumThreads(1);
   while (const auto frame = source->next()) slam.feed(*frame);
