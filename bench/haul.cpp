@@ -124,8 +124,8 @@ class Haul {
     core::Truth truth;
     truth.trajectory = source_->true_trajectory();  // which places are one is a matrix too large
     Table table{{"figure", "value"}, {}};
-    for (const auto& [name, value] : run::figures_of(evaluate_slam(findings, truth)))
-      table.rows.push_back({name, value});
+    for (const auto& figure : run::figures_of(run::evaluate_slam(findings, truth)))
+      table.rows.push_back({figure.name, figure.value});
     table.rows.push_back({"live landmarks", std::to_string(num_live(slam_.map().landmarks))});
     return table;
   }
