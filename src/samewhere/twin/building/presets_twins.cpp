@@ -5,7 +5,7 @@
 namespace samewhere::twin {
 namespace {
 
-constexpr int kSouth = 0;
+constexpr int kSouthWall = 0;
 
 // A leg of 16 m, a connection from its east end to the other leg, a lounge and a store room.
 struct Half {
@@ -41,7 +41,7 @@ void furnish_half(Draft& draft, const Half& half, int first_number) {
   dresser.dress(half.leg, {.sides = {Use::kDoors, Use::kPlain, Use::kDoors, Use::kPlain}});
   dresser.dress(half.connection, {.sides = {Use::kPlain, Use::kPlain, Use::kPlain, Use::kWindows},
                                   .has_pipes = true});
-  dresser.furnish_lounge(half.lounge, kSouth);
+  dresser.furnish_lounge(half.lounge, kSouthWall);
   dresser.dress(half.store,
                 {.sides = {Use::kBare, Use::kPlain, Use::kBare, Use::kPlain}, .max_depth_m = 0.2F});
   const Wall back = dresser.wall_of(half.store, 2);

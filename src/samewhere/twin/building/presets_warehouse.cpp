@@ -7,13 +7,13 @@ namespace {
 
 constexpr int kNumAisles = 4;
 constexpr float kHeight_m = 6.0F;
-constexpr float kPitch_m = 4.8F;  // from aisle to aisle: two racks and the way between them
-constexpr float kLength_m = 6.3F;
+constexpr float kAislePitch_m = 4.8F;  // from aisle to aisle: two racks and the way between them
+constexpr float kRackLength_m = 6.3F;
 constexpr float kCross_m = 3.4F;   // width of the cross aisles
 constexpr float kMargin_m = 0.8F;  // beside the outer racks
 constexpr float kRackDepth_m = 1.1F;
 constexpr float kBehind_m = 0.12F;  // between the backs of two racks, half of it
-constexpr float kWidth_m = kNumAisles * kPitch_m;
+constexpr float kHallWidth_m = kNumAisles * kAislePitch_m;
 
 Space hall(int unit, const std::string& name, const Eigen::Vector2f& low_m,
            const Eigen::Vector2f& high_m) {
@@ -30,10 +30,11 @@ Space hall(int unit, const std::string& name, const Eigen::Vector2f& low_m,
 // Every other aisle is turned by half a turn: a serpentine sees all of them from the same end.
 int add_aisle(Plan& plan, int index) {
   const bool is_turned = index % 2 == 1;
-  const float x_m = kPitch_m * static_cast<float>(is_turned ? index + 1 : index);
+  const float x_m = kAislePitch_m * static_cast<float>(is_turned ? index + 1 : index);
   const int unit = plan.add_unit(0, {.num_quarter_turns = is_turned ? 2 : 0,
-                                     .origin_m = {x_m, is_turned ? kLength_m : 0.0F, 0.0F}});
-  plan.add(hall(unit, "aisle " + std::to_string(index + 1), {0.0F, 0.0F}, {kPitch_m, kLength_m}));
+                                     .origin_m = {x_m, is_turned ? kRackLength_m : 0.0F, 0.0F}});
+  plan.add(hall(unit, "aisle " + std::to_string(index + 1), {0.0F, 0.0F},
+                {kAislePitch_m, kRackLength_m}));
   return unit;
 }
 
@@ -41,12 +42,12 @@ void furnish_aisle(Draft& draft, int unit) {
   Dresser dresser(draft, unit);
   Furnisher& furnisher = dresser.furnisher();
   const RackSize size{.length_m = 6.0F, .num_levels = 4};
-  const float middle_m = 0.5F * kLength_m;
+  const float middle_m = 0.5F * kRackLength_m;
   furnisher.add_rack({{kBehind_m + 0.5F * kRackDepth_m, middle_m, 0.0F}, 0.0F}, size);
-  furnisher.add_rack({{kPitch_m - kBehind_m - 0.5F * kRackDepth_m, middle_m, 0.0F}, 3.14159265F},
-                     size);
+  furnisher.add_rack(
+      {{kAislePitch_m - kBehind_m - 0.5F * kRackDepth_m, middle_m, 0.0F}, 3.14159265F}, size);
   for (const float along : {0.15F, 0.5F, 0.85F}) {
-    furnisher.add_high_bay_lamp({0.5F * kPitch_m, along * kLength_m}, kHeight_m);
+    furnisher.add_high_bay_lamp({0.5F * kAislePitch_m, along * kRackLength_m}, kHeight_m);
   }
 }
 
@@ -56,13 +57,14 @@ struct Cross {
 };
 
 Cross add_cross(Plan& plan, bool is_turned) {
-  Cross cross{
-      .unit = plan.add_unit(1, {.num_quarter_turns = is_turned ? 2 : 0,
-                                .origin_m = is_turned ? Eigen::Vector3f(kWidth_m, kLength_m, 0.0F)
-                                                      : Eigen::Vector3f(0.0F, 0.0F, 0.0F)})};
+  Cross cross{.unit = plan.add_unit(
+                  1, {.num_quarter_turns = is_turned ? 2 : 0,
+                      .origin_m = is_turned ? Eigen::Vector3f(kHallWidth_m, kRackLength_m, 0.0F)
+                                            : Eigen::Vector3f(0.0F, 0.0F, 0.0F)})};
   cross.way = plan.add(
-      hall(cross.unit, "cross aisle", {-kMargin_m, -kCross_m}, {kWidth_m + kMargin_m, 0.0F}));
-  cross.margin = plan.add(hall(cross.unit, "cross aisle", {-kMargin_m, 0.0F}, {0.0F, kLength_m}));
+      hall(cross.unit, "cross aisle", {-kMargin_m, -kCross_m}, {kHallWidth_m + kMargin_m, 0.0F}));
+  cross.margin =
+      plan.add(hall(cross.unit, "cross aisle", {-kMargin_m, 0.0F}, {0.0F, kRackLength_m}));
   return cross;
 }
 
@@ -87,9 +89,9 @@ void furnish_cross(Draft& draft, const Cross& cross, int first_number) {
   furnisher.add_pipes(left, 3.2F);
   furnisher.add_sign({dresser.wall_of(cross.way, 3), 1.4F}, Pictogram::kArrow);
   for (int i = 0; i < kNumAisles; ++i) {
-    const float x_m = kPitch_m * (static_cast<float>(i) + 0.5F);
+    const float x_m = kAislePitch_m * (static_cast<float>(i) + 0.5F);
     furnisher.add_high_bay_lamp({x_m, -0.5F * kCross_m}, kHeight_m);
-    furnisher.add_bay_number({back, kWidth_m + kMargin_m - x_m}, first_number + i);
+    furnisher.add_bay_number({back, kHallWidth_m + kMargin_m - x_m}, first_number + i);
   }
 }
 
@@ -111,8 +113,8 @@ World warehouse(const Spec& spec) {
   Route& route = world.route;
   route = {.carrier = Carrier::kRobot, .speed_m_s = 1.75, .camera_height_m = 0.75};
   constexpr double kSouth_m = -1.25;
-  constexpr double kNorth_m = kLength_m + 1.25;
-  const auto aisle_x_m = [](int i) { return static_cast<double>(kPitch_m) * (i + 0.5); };
+  constexpr double kNorth_m = kRackLength_m + 1.25;
+  const auto aisle_x_m = [](int i) { return static_cast<double>(kAislePitch_m) * (i + 0.5); };
   route.start_m = {aisle_x_m(0), kSouth_m, 0.0};
   route.start_heading_rad = 1.57079632679490;
   for (int i = 0; i < kNumAisles; ++i) {
@@ -121,7 +123,7 @@ World warehouse(const Spec& spec) {
     const bool is_last = i + 1 == kNumAisles;
     walk(route, {{aisle_x_m(is_last ? 0 : i + 1), goes_north ? kNorth_m : kSouth_m, 0.0}});
   }
-  walk(route, {{aisle_x_m(0), 0.55 * kLength_m, 0.0}});
+  walk(route, {{aisle_x_m(0), 0.55 * kRackLength_m, 0.0}});
   return world;
 }
 
