@@ -53,7 +53,7 @@ TEST(Verdict, ALoopSaysWhatItRestsOn) {
   geometry.reprojection_rmse_px = 1.3;
   EXPECT_EQ(name_of(Verdict(loop)), "LOOP");
   EXPECT_EQ(stage_of(Verdict(loop)), "accepted");
-  EXPECT_THAT(reason_of(Verdict(loop)), AllOf(HasSubstr("62 features"), HasSubstr("1.30 px")));
+  EXPECT_THAT(reason_of(Verdict(loop)), AllOf(HasSubstr("62 inliers"), HasSubstr("1.30 px")));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST_F(TruthFile, AFolderWithoutTruthHasNone) {
 }
 
 TEST_F(TruthFile, APgmTellsSameNearAndDifferentByRowAndColumn) {
-  folder_.write("same_place.pgm", std::string("P5\n# comment\n2 2\n2\n\1\2\0\1", 27));
+  folder_.write("same_place.pgm", std::string("P5\n# comment\n2 2\n2\n\1\2\0\1", 23));
   const core::Truth truth = read_truth(folder_.root(), 2);
   ASSERT_TRUE(truth.places);
   EXPECT_EQ(truth.places->num_frames, 2);

@@ -49,7 +49,7 @@ TEST(FramesCsv, QuotesNamesThatNeedIt) {
   frame.name = "a,\"b\".png";
   frame.pose.reference_keyframe = {};
   EXPECT_TRUE(
-      frames_csv({frame}).ends_with("0,0.000000,\"a,\"\"b\"\".png\",starting,0,0,,,,,,,,\n"));
+      frames_csv({frame}).ends_with("0,0.000000,\"a,\"\"b\"\".png\",initializing,0,0,,,,,,,,\n"));
 }
 
 TEST(FramesCsv, IsReadBackWhateverTheNames) {

@@ -63,8 +63,8 @@ void ResultsFolder::require_usable() const {
   }
   for (const char* name : kResults) {
     if (!is_name_taken(folder / name)) continue;
-    throw InputError((folder / name).string() + ": exists and is of no earlier run (no " + kOfRun +
-                     " beside it); expected another folder for the results");
+    throw InputError((folder / name).string() + ": is there already and of no earlier run (no " +
+                     kOfRun + " beside it); expected another folder for the results");
   }
 }
 
