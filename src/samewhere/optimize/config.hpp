@@ -265,9 +265,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "Segments of loop edges, rejected as one hypothesis", .is_expert = true});
   visit("consistency", config.consistency,
         {.help = "When measurement noise explains a solved graph", .is_expert = true});
-  visit(
-      "initial_guesses", config.initial_guesses,
-      {.help = "Of `samewhere optimize`: solution from several initial guesses", .is_expert = true});
+  visit("initial_guesses", config.initial_guesses,
+        {.help = "Of `samewhere optimize`: solution from several initial guesses",
+         .is_expert = true});
 }
 
 }  // namespace samewhere::optimize

@@ -31,10 +31,11 @@ struct RequiredEvidence {
 // Competing hypotheses for the pose of a lost camera (decision 017). Each view is tracked in the
 // local map of each hypothesis; inliers and visible landmarks are summed over the last views. A
 // hypothesis is accepted once it has explained enough views and no other competes: none has about
-// as many inliers, or as many inliers per visible landmark (track.relocalization.max_competing_ratio). Two
-// hypotheses are compared in those cells of the image where the map shows similar numbers of
-// landmarks at both; if these are few, the result is undecided. A place that the loop verifier
-// recognized but where tracking fails also prevents acceptance.
+// as many inliers, or as many inliers per visible landmark
+// (track.relocalization.max_competing_ratio). Two hypotheses are compared in those cells of the
+// image where the map shows similar numbers of landmarks at both; if these are few, the result is
+// undecided. A place that the loop verifier recognized but where tracking fails also prevents
+// acceptance.
 class PoseHypotheses {
  public:
   PoseHypotheses(const Config& config, const track::Tracker& tracker)
