@@ -68,8 +68,22 @@ function(samewhere_plain_folder NAME)
   add_library(samewhere::${NAME} ALIAS samewhere_${NAME})
 endfunction()
 
-# samewhere_test(NAME SOURCES file... LINKS target...): one GoogleTest program, whose cases ctest runs and counts one by one.
-# Each case carries NAME as its label. Tests of parts that the build leaves out are left out (SamewhereParts.cmake), and a program of nothing else.
+# Test programs, by the preset that runs them besides `test`: those that read files of others run with the address sanitizer,
+# those with threads with the thread sanitizer too. The others would take too long to build and to run with them.
+set(samewhere_asan_tests core input scene features dense describe)
+list(TRANSFORM samewhere_asan_tests REPLACE "(.+)" "samewhere_\\1_test")
+list(APPEND samewhere_asan_tests cli_test formats_test)
+set(samewhere_tsan_tests samewhere_core_test samewhere_input_test recognition_threads_test slam_threads_test)
+# run first, because they take longest
+set(samewhere_long_tests golden_test cli_walks_test samewhere_pipeline_test cli_test slam_threads_test)
+foreach(label asan tsan plain)
+  add_custom_target(tests_${label})
+endforeach()
+
+# samewhere_test(NAME SOURCES file... LINKS target...): one GoogleTest program. ctest runs it as one test, since starting it takes
+# longer than most of its cases; the cases are counted from the XML that it writes to test-results/ of the build folder. Labels:
+# `asan` and `tsan` as above, `plain` without `asan`; targets tests_LABEL build them. Tests of parts that the build leaves out are
+# left out (SamewhereParts.cmake), and a program of nothing else.
 function(samewhere_test NAME)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
   samewhere_leave_out_tests(TEST_SOURCES)
@@ -79,5 +93,24 @@ function(samewhere_test NAME)
   add_executable(${NAME} ${TEST_SOURCES})
   target_link_libraries(${NAME} PRIVATE ${TEST_LINKS} samewhere_options GTest::gtest_main GTest::gmock)
   samewhere_merge_test(${NAME})
-  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${NAME})
+  # a test that ends its process does so in one that is started for it: this one may have threads by then
+  add_test(NAME ${NAME}
+           COMMAND ${NAME} --gtest_brief=1 --gtest_death_test_style=threadsafe --gtest_death_test_use_fork
+                   --gtest_output=xml:${CMAKE_BINARY_DIR}/test-results/${NAME}.xml)
+  set(labels plain)
+  if(NAME IN_LIST samewhere_asan_tests)
+    set(labels asan)
+  endif()
+  if(NAME IN_LIST samewhere_tsan_tests)
+    list(APPEND labels tsan)
+  endif()
+  foreach(label IN LISTS labels)
+    add_dependencies(tests_${label} ${NAME})
+  endforeach()
+  list(FIND samewhere_long_tests ${NAME} rank)
+  if(rank LESS 0)
+    set(rank 100)
+  endif()
+  math(EXPR cost "100 - ${rank}")
+  set_tests_properties(${NAME} PROPERTIES WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} TIMEOUT 1500 LABELS "${labels}" COST ${cost})
 endfunction()
