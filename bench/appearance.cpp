@@ -21,7 +21,7 @@
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/run/open_source.hpp>
-#include <samewhere/twin/spec.hpp>
+#include <samewhere/twin/building/spec.hpp>
 
 namespace samewhere::bench {
 namespace {

@@ -65,7 +65,7 @@ void measure_walk(const std::string& source, const Settings& settings, Table& ta
   pipeline::Config config = pipeline::profile("default");
   config.source = source;
   const Walk walk = walk_of(config);
-  config = with_window_in_frames(config, walk.info);
+  config = run::with_window_in_frames(config, walk.info);
   for (const Pace pace : {Pace::kOfTheCamera, Pace::kAsFastAsItCan}) {
     Passes with{true, {}};
     Passes without{false, {}};

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/geometry/camera.hpp>
-#include <samewhere/twin/camera.hpp>
+#include <samewhere/twin/front/camera.hpp>
 
 namespace samewhere::bench {
 namespace {

@@ -76,8 +76,8 @@ class Haul {
   // The map is saved as it grows, if a file is named.
   Haul(const pipeline::Config& config, const std::string& map_file)
       : source_(run::open_source(config)),
-        slam_(with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
-              hooks()) {
+        slam_(run::with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
+              keep_map()) {
     if (!map_file.empty()) saver_.emplace(map_file, config, slam_.describer_checksum());
   }
 
@@ -124,23 +124,21 @@ class Haul {
     core::Truth truth;
     truth.trajectory = source_->true_trajectory();  // which places are one is a matrix too large
     Table table{{"figure", "value"}, {}};
-    for (const auto& [name, value] : run::figures_of(evaluate_slam(findings, truth)))
-      table.rows.push_back({name, value});
+    for (const auto& figure : run::figures_of(run::evaluate_slam(findings, truth)))
+      table.rows.push_back({figure.name, figure.value});
     table.rows.push_back({"live landmarks", std::to_string(num_live(slam_.map().landmarks))});
     return table;
   }
 
  private:
-  pipeline::SlamHooks hooks() {
-    pipeline::SlamHooks hooks;
-    hooks.keep_map = [this](const scene::MapVersion& map, const pipeline::MapNews& news) {
+  pipeline::KeepMap keep_map() {
+    return [this](const scene::MapVersion& map, const pipeline::MapNews& news) {
       num_keyframes_ = map.keyframes.size();
       num_live_keyframes_ = num_live(map.keyframes);
       num_landmarks_ = map.landmarks.size();
       num_loops_ = map.loops.size();
       if (saver_) saver_->save(map, news);
     };
-    return hooks;
   }
 
   void feed(const core::Frame& frame) {

@@ -163,7 +163,7 @@ void measure_walk(const std::string& source, const Settings& settings, Table& ta
   config.source = source;
   config.threads = false;
   const Walk walk = walk_of(config);
-  config = with_window_in_frames(config, walk.info);
+  config = run::with_window_in_frames(config, walk.info);
   const auto& revisits = walk.truth.revisits;
   if (!revisits || revisits->empty() || !walk.truth.places)
     throw core::InputError(source + ": returns to no place, expected a sequence that does");

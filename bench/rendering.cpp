@@ -13,7 +13,7 @@
 #include "program.hpp"
 #include <samewhere/core/grey.hpp>
 #include <samewhere/core/timing.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere::bench {
 namespace {

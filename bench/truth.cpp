@@ -18,9 +18,9 @@
 #include <samewhere/core/median.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/geometry/camera.hpp>
-#include <samewhere/twin/inertial.hpp>
-#include <samewhere/twin/studio.hpp>
-#include <samewhere/twin/walkthrough.hpp>
+#include <samewhere/twin/front/studio.hpp>
+#include <samewhere/twin/front/walkthrough.hpp>
+#include <samewhere/twin/motion/inertial.hpp>
 
 namespace samewhere::bench {
 namespace {

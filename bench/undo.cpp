@@ -13,6 +13,7 @@
 #include <samewhere/core/progress.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/pipeline/slam_test_hooks.hpp>
 #include <samewhere/run/open_source.hpp>
 
 namespace samewhere::bench {
@@ -70,10 +71,10 @@ void perturb(pipeline::LoopAnswer& answer, bool& is_perturbed) {
   is_perturbed = true;
 }
 
-pipeline::SlamHooks reference_hooks(const FalseLoopInjector& injector,
-                                    WithdrawalRecorder& recorder) {
-  pipeline::SlamHooks hooks;
-  hooks.lie = [&](const auto& question, auto& answer) {
+pipeline::SlamTestHooks reference_hooks(const FalseLoopInjector& injector,
+                                        WithdrawalRecorder& recorder) {
+  pipeline::SlamTestHooks hooks;
+  hooks.alter_loops = [&](const auto& question, auto& answer) {
     injector.answer_with_true_loops(question, answer);
   };
   hooks.keep_map = [&](const auto& map, const auto&) { recorder.receive_reference_map(map); };
@@ -87,11 +88,11 @@ Outcome run_both(const pipeline::Config& config, int inject_after, bool is_contr
   const core::Truth truth = source->truth();
   FalseLoopInjector injector(config, inject_after, truth);
   WithdrawalRecorder recorder(config, injector, truth);
-  const pipeline::Config in_frames = with_window_in_frames(config, source->info());
+  const pipeline::Config in_frames = run::with_window_in_frames(config, source->info());
   using pipeline::Slam;
   bool is_perturbed = false;
-  pipeline::SlamHooks hooks;
-  hooks.lie = [&](const auto& question, auto& answer) {
+  pipeline::SlamTestHooks hooks;
+  hooks.alter_loops = [&](const auto& question, auto& answer) {
     const pipeline::LoopAnswer of_verifier = answer;
     injector.answer(question, answer);
     if (!is_control) return;

@@ -1,7 +1,7 @@
 # samewhere_folder(NAME LINKS target...)
 #
-# One folder of src/samewhere is one library `samewhere_NAME` (alias samewhere::NAME): its *.cpp, linked to
-# nothing but LINKS. Its *_test.cpp become `samewhere_NAME_test`. Which folder may link which is the layering of
+# One folder of src/samewhere, with its sub-folders, is one library `samewhere_NAME` (alias samewhere::NAME): its *.cpp,
+# linked to nothing but LINKS. Its *_test.cpp become `samewhere_NAME_test`. Which folder may link which is the layering of
 # docs/design.md; `./run lint` checks it on the #includes.
 #
 # samewhere_plain_folder(NAME LINKS target...): the same for a folder that no sanitizer needs to watch. A sanitized build takes
@@ -31,9 +31,9 @@ endif()
 
 function(samewhere_folder NAME)
   cmake_parse_arguments(FOLDER "" "" "LINKS;TEST_LINKS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
-  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
-  file(GLOB benches CONFIGURE_DEPENDS *_bench.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp */*_test.cpp)
+  file(GLOB benches CONFIGURE_DEPENDS *_bench.cpp */*_bench.cpp)
   list(REMOVE_ITEM sources ${tests} ${benches})
   if(sources)
     add_library(samewhere_${NAME} STATIC ${sources})

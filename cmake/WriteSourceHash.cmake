@@ -15,7 +15,7 @@ foreach(folder IN LISTS FOLDERS)
 endforeach()
 string(SHA256 hash "${text}")
 file(CONFIGURE OUTPUT ${OUT} @ONLY CONTENT [[
-#include <samewhere/twin/source_hash.hpp>
+#include <samewhere/twin/render/source_hash.hpp>
 
 namespace samewhere::twin {
 

@@ -19,8 +19,8 @@
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/describe/preprocess.hpp>
 #include <samewhere/network/inference.hpp>
-#include <samewhere/twin/picture_cache.hpp>
-#include <samewhere/twin/ray_scene.hpp>
+#include <samewhere/twin/render/picture_cache.hpp>
+#include <samewhere/twin/render/ray_scene.hpp>
 
 namespace samewhere::app {
 namespace {

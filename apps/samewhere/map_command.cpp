@@ -5,7 +5,9 @@
 #include "options.hpp"
 #include "print.hpp"
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/terminal.hpp>
 #include <samewhere/run/map_export.hpp>
+#include <samewhere/scene/map_upgrade.hpp>
 
 namespace samewhere::app {
 namespace {
@@ -43,6 +45,15 @@ void add_export(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
   });
 }
 
+void add_upgrade(CLI::App& map, const std::shared_ptr<MapCommand>& command) {
+  map.add_subcommand("upgrade", "Rewrite a map file of the version before in the current one")
+      ->callback([command] {
+        core::print("{}: {}\n", command->file,
+                    scene::upgrade_map_file(command->file) ? "upgraded"
+                                                           : "is of the current version already");
+      });
+}
+
 }  // namespace
 
 void add_map_command(CLI::App& app) {
@@ -54,6 +65,7 @@ void add_map_command(CLI::App& app) {
   sub->require_subcommand(1);
   add_info(*sub, command);
   add_export(*sub, command);
+  add_upgrade(*sub, command);
   sub->footer(
       "Examples:\n"
       "  samewhere map runs/demo/map.sw info\n"

@@ -14,9 +14,9 @@
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/run/open_source.hpp>
-#include <samewhere/twin/contact_sheet.hpp>
-#include <samewhere/twin/dataset.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/contact_sheet.hpp>
+#include <samewhere/twin/front/dataset.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere::app {
 namespace {

@@ -112,7 +112,7 @@ TEST_F(Commands, DoctorPrintsWhatAReportOfAFaultNeeds) {
   ASSERT_EQ(doctor.exit_code, 0) << doctor.err;
   for (const char* row :
        {"samewhere ", "build ", "OpenCV ", "Eigen ", "Ceres ", "threads ", "networks run by ",
-        "rendered pictures ", "view described by", "HOG", "descriptor ", " ms "}) {
+        "rendered pictures ", "image descriptor", "HOG", "descriptor ", " ms "}) {
     EXPECT_NE(doctor.out.find(row), std::string::npos) << row << "\n" << doctor.out;
   }
 }
@@ -130,8 +130,8 @@ TEST_F(Commands, DoctorNamesANetworkThatCannotBeUsedAfterWhatItKnows) {
 TEST_F(Commands, DoctorTimesEveryDescriberThereIs) {
   const auto num_described = [](const std::string& text) {
     std::size_t num = 0;
-    for (std::size_t at = text.find("view described by"); at != std::string::npos;
-         at = text.find("view described by", at + 1))
+    for (std::size_t at = text.find("image descriptor"); at != std::string::npos;
+         at = text.find("image descriptor", at + 1))
       ++num;
     return num;
   };

@@ -75,7 +75,7 @@ TEST_F(InputCommands, CalibrateTakesSharpFramesOfAVideoThatLieApart) {
   const Outcome outcome = run("calibrate " + quoted(path("board.avi")) +
                               " --board 5x4 --square 0.03 --out " + quoted(path("video.txt")));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("12 show the board, 6 apart are used"));
+  EXPECT_THAT(outcome.out, HasSubstr("12 with the board, 6 distinct views used"));
   const auto camera = geometry::pinhole(input::read_camera_file(path("video.txt")).camera);
   EXPECT_NEAR(camera.fx_px, 260.0, 6.0);
 }

@@ -6,8 +6,8 @@
 #include "program.hpp"
 #include <samewhere/input/open.hpp>
 #include <samewhere/input/test_folder.hpp>
-#include <samewhere/twin/dataset.hpp>
-#include <samewhere/twin/test_source.hpp>
+#include <samewhere/twin/front/dataset.hpp>
+#include <samewhere/twin/front/test_source.hpp>
 
 namespace samewhere::test {
 namespace {

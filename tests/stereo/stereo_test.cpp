@@ -14,7 +14,7 @@
 #include <samewhere/features/orb.hpp>
 #include <samewhere/features/stereo.hpp>
 #include <samewhere/geometry/camera.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere {
 namespace {

@@ -15,7 +15,7 @@
 #include <samewhere/report/loops.hpp>
 #include <samewhere/run/recognition.hpp>
 
-namespace samewhere::pipeline {
+namespace samewhere::run {
 namespace {
 
 // Steps that only pass on the number of a frame.
@@ -112,7 +112,7 @@ NextFrame two_laps() {
   };
 }
 
-std::string found_by(const Config& config, decltype(run_in_turn)* run) {
+std::string found_by(const pipeline::Config& config, decltype(run_in_turn)* run) {
   cv::setNumThreads(1);
   Recognition recognition(config);
   run(two_laps(), recognition.steps());
@@ -125,7 +125,7 @@ std::string found_by(const Config& config, decltype(run_in_turn)* run) {
 
 TEST(RecognitionThreads, ResultsOnRealImagesEqualThoseOfOneThread) {
   for (const char* name : {"default", "paper"}) {
-    Config config = profile(name);
+    pipeline::Config config = pipeline::profile(name);
     config.retrieve.window_frames = 2;
     config.retrieve.num_draws = 1000;
     EXPECT_EQ(found_by(config, run_in_threads), found_by(config, run_in_turn)) << name;
@@ -133,4 +133,4 @@ TEST(RecognitionThreads, ResultsOnRealImagesEqualThoseOfOneThread) {
 }
 
 }  // namespace
-}  // namespace samewhere::pipeline
+}  // namespace samewhere::run

@@ -18,6 +18,7 @@
 #include <samewhere/core/random.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/pipeline/slam_test_hooks.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/run/map_saver.hpp>
 
@@ -118,14 +119,15 @@ struct Found {
 };
 
 Found found_by(const std::vector<core::Frame>& frames, const Config& config,
-               const core::Dawdle& dawdle = {}, DepthFrom depth_from = DepthFrom::kSensor) {
+               const core::StageHook& hook = {}, DepthFrom depth_from = DepthFrom::kSensor) {
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("samewhere_slam_threads_" + std::to_string(getpid()) + ".sw");
   std::filesystem::remove(path);
-  std::optional<MapSaver> saver;
+  std::optional<run::MapSaver> saver;
   Slam slam(config, depth_from,
-            {.keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
-             .dawdle = dawdle});
+            SlamTestHooks{
+                .keep_map = [&](const auto& map, const MapNews& news) { saver->save(map, news); },
+                .before_message = hook});
   saver.emplace(path, config, slam.describer_checksum());
   for (const auto& frame : frames) slam.feed(frame);
   slam.finish();
@@ -152,7 +154,7 @@ void expect_same(const Found& found, const Found& expected, const std::string& h
 }
 
 // Sleeps for up to 30 ms at each message; the seed determines how long.
-core::Dawdle asleep(std::uint64_t seed) {
+core::StageHook asleep(std::uint64_t seed) {
   return [seed](std::uint64_t number) {
     core::Random random(core::seed_of(seed, "dawdle", number));
     std::this_thread::sleep_for(std::chrono::milliseconds(random.index(31)));
@@ -239,8 +241,8 @@ TEST(SlamThreads, WithoutDepthResultsEqualThoseOfOneThread) {
 
 // A later session in the map of the first third of the path, as trajectory and ledger.
 std::string found_in_known_map(const scene::StoredMap& known, const Config& config,
-                               const core::Dawdle& dawdle = {}) {
-  Slam slam(config, known, Slam::Use::kExtend, {.dawdle = dawdle});
+                               const core::StageHook& hook = {}) {
+  Slam slam(config, known, Slam::Use::kExtend, SlamTestHooks{.before_message = hook});
   std::uint64_t number = 0;
   for (core::Frame frame : walk()) {
     frame.id = core::FrameId(number++, slam.session());
@@ -265,7 +267,7 @@ TEST(SlamThreads, InAKnownMapResultsEqualThoseOfOneThread) {
   EXPECT_EQ(found_in_known_map(known, config_of(true), asleep(4)), in_turn);
 }
 
-void run_to_the_end(const std::vector<core::Frame>& frames, const SlamHooks& hooks) {
+void run_to_the_end(const std::vector<core::Frame>& frames, const SlamTestHooks& hooks) {
   Slam slam(config_of(true), DepthFrom::kSensor, hooks);
   for (const auto& frame : frames) slam.feed(frame);
   slam.finish();
@@ -280,25 +282,27 @@ TEST(SlamThreads, AnExceptionInAStageIsRethrownWithoutDeadlock) {
     };
     EXPECT_THROW(run_to_the_end(frames, {.keep_map = fail}), core::InputError) << num_kept;
   }
-  Slam broken(config_of(false), DepthFrom::kSensor,
-              {.keep_map = [](const auto&, const auto&) { throw core::InputError("no room"); },
-               .dawdle = {}});
+  Slam broken(
+      config_of(false), DepthFrom::kSensor,
+      SlamTestHooks{.keep_map = [](const auto&, const auto&) { throw core::InputError("no room"); },
+                    .before_message = {}});
   EXPECT_THROW(broken.feed(frames[0]), core::InputError);
   EXPECT_THROW(broken.feed(frames[1]), core::ContractError)
       << "no frame is accepted after an error";
   // message by message, in mapping or in loop closing
   for (const std::uint64_t last : {0, 1, 2, 3, 8}) {
-    const core::Dawdle fail = [last](std::uint64_t number) {
+    const core::StageHook fail = [last](std::uint64_t number) {
       if (number == last) throw std::runtime_error("broken");
     };
-    EXPECT_THROW(run_to_the_end(frames, {.dawdle = fail}), std::runtime_error) << last;
+    EXPECT_THROW(run_to_the_end(frames, {.before_message = fail}), std::runtime_error) << last;
   }
 }
 
 TEST(SlamThreads, DestructionDuringWorkEnds) {
   const std::vector<core::Frame> frames = walk();
   for (const std::size_t num_frames : {0, 1, 2, 7, 20}) {
-    Slam slam(config_of(true), DepthFrom::kSensor, {.dawdle = asleep(num_frames)});
+    Slam slam(config_of(true), DepthFrom::kSensor,
+              SlamTestHooks{.before_message = asleep(num_frames)});
     for (std::size_t i = 0; i < num_frames; ++i) slam.feed(frames[i]);
   }
 }

@@ -15,7 +15,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/ordered_workers.hpp>
 #include <samewhere/core/share_out.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace {
 

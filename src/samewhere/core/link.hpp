@@ -60,7 +60,7 @@ class DirectLink : public Link<Message, Answer> {
 
 // For tests: called in the stage's thread before each message is served and before each answer is
 // given; `number` counts both together.
-using Dawdle = std::function<void(std::uint64_t number)>;
+using StageHook = std::function<void(std::uint64_t number)>;
 
 // The stage works in a thread of its own. No more than `capacity` messages are sent whose answers
 // were not received, so that no side ever waits for room. The destructor waits until the stage has
@@ -69,9 +69,9 @@ template <class Message, class Answer>
 class ThreadLink : public Link<Message, Answer> {
  public:
   using typename Link<Message, Answer>::Serve;
-  ThreadLink(Serve serve, std::size_t capacity, Dawdle dawdle)
+  ThreadLink(Serve serve, std::size_t capacity, StageHook hook)
       : serve_(std::move(serve)),
-        dawdle_(std::move(dawdle)),
+        hook_(std::move(hook)),
         messages_(capacity),
         answers_(capacity),
         worker_([this] { work(); }) {}
@@ -98,11 +98,11 @@ class ThreadLink : public Link<Message, Answer> {
     const Closing closing{*this};
     std::uint64_t number = 0;
     const auto reply = [&](Answer answer) {
-      if (dawdle_) dawdle_(number++);
+      if (hook_) hook_(number++);
       answers_.send(std::move(answer));
     };
     while (std::optional<Message> message = messages_.receive()) {
-      if (dawdle_) dawdle_(number++);
+      if (hook_) hook_(number++);
       serve_(std::move(*message), reply);
     }
     processor_ms_ = thread_processor_ms();
@@ -124,7 +124,7 @@ class ThreadLink : public Link<Message, Answer> {
   };
 
   Serve serve_;
-  Dawdle dawdle_;
+  StageHook hook_;
   Channel<Message> messages_;
   Channel<Answer> answers_;
   double processor_ms_ = 0.0;

@@ -26,7 +26,7 @@ std::vector<std::unique_ptr<TestLink>> both_links(const TestLink::Serve& serve,
                                                   std::size_t capacity = 4) {
   std::vector<std::unique_ptr<TestLink>> links;
   links.push_back(std::make_unique<DirectLink<int, std::string>>(serve));
-  links.push_back(std::make_unique<ThreadLink<int, std::string>>(serve, capacity, Dawdle{}));
+  links.push_back(std::make_unique<ThreadLink<int, std::string>>(serve, capacity, StageHook{}));
   return links;
 }
 

@@ -56,7 +56,7 @@ TEST(Newest, EveryFrameIsGivenOrCountedAndTheLastIsGiven) {
   });
   EXPECT_EQ(last_s, kNumFrames - 1);
   EXPECT_EQ(num_given + num_dropped, kNumFrames);
-  EXPECT_THAT(said, HasSubstr("pulled the plug"));
+  EXPECT_THAT(said, HasSubstr("was unplugged"));
   EXPECT_FALSE(source->next());
 }
 

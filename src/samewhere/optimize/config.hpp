@@ -258,16 +258,16 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "largest number of iterations of the pose graph", .min = 1, .max = 1000});
   visit_loss_fields(config, visit);
   visit_scale_fields(config, visit);
-  visit("gnc", config.gnc, {.help = "graduated non-convexity over loop edges", .is_expert = true});
+  visit("gnc", config.gnc, {.help = "Graduated non-convexity over loop edges", .is_expert = true});
   visit("loop_groups", config.loop_groups,
-        {.help = "groups of consistent loop edges, re-tested together", .is_expert = true});
+        {.help = "Groups of consistent loop edges, re-tested together", .is_expert = true});
   visit("loop_segments", config.loop_segments,
-        {.help = "segments of loop edges, rejected as one hypothesis", .is_expert = true});
+        {.help = "Segments of loop edges, rejected as one hypothesis", .is_expert = true});
   visit("consistency", config.consistency,
-        {.help = "when measurement noise explains a solved graph", .is_expert = true});
+        {.help = "When measurement noise explains a solved graph", .is_expert = true});
   visit(
       "initial_guesses", config.initial_guesses,
-      {.help = "of `samewhere optimize`: solved from several initial guesses", .is_expert = true});
+      {.help = "Of `samewhere optimize`: solution from several initial guesses", .is_expert = true});
 }
 
 }  // namespace samewhere::optimize

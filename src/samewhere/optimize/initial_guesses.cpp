@@ -87,7 +87,7 @@ bool is_good_enough(const PoseGraph& graph, const Config& config, const PoseGrap
 
 std::string_view name_of(InitialGuess guess) {
   constexpr std::string_view kNames[] = {"poses of the file", "odometry", "chordal relaxation"};
-  return kNames[static_cast<int>(start)];
+  return kNames[static_cast<int>(guess)];
 }
 
 BestOfGuesses solve_from_initial_guesses(PoseGraph& graph, const Config& config) {

@@ -12,7 +12,7 @@
 #include <samewhere/optimize/config.hpp>
 #include <samewhere/retrieve/config.hpp>
 #include <samewhere/track/config.hpp>
-#include <samewhere/twin/config.hpp>
+#include <samewhere/twin/front/config.hpp>
 #include <samewhere/verify/config.hpp>
 
 namespace samewhere::pipeline {

@@ -14,7 +14,7 @@
 #include <samewhere/core/random.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/slam.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere::pipeline {
 namespace {

@@ -31,6 +31,8 @@ class FullBundles {
   // `bundling` outlives this.
   FullBundles(const map::Config& config, BundleLink& bundling)
       : config_(config), bundling_(bundling) {}
+  FullBundles(const FullBundles&) = delete;
+  FullBundles& operator=(const FullBundles&) = delete;
 
   // Loops have moved the map.
   void note_correction(const scene::MapVersion& map);

@@ -9,7 +9,7 @@
 namespace samewhere::pipeline {
 namespace {
 
-// Each keyframe of the walk asks in turn; all pictures look the same, so that the map alone says
+// Each keyframe of the walk asks in turn; all images are the same, so that the map alone decides
 // which of them are worth a look.
 class LoopClosingInRooms : public LookAlikeRooms {
  protected:
@@ -24,7 +24,7 @@ class LoopClosingInRooms : public LookAlikeRooms {
   }
 };
 
-TEST_F(LoopClosingInRooms, WhoSharesLandmarksWithTheKeyframeIsNoCandidate) {
+TEST_F(LoopClosingInRooms, KeyframesWithCommonLandmarksAreNoCandidates) {
   const core::Ledger ledger = ledger_of_walk();
   ASSERT_FALSE(ledger.empty());
   for (const core::LedgerRow& row : ledger) {

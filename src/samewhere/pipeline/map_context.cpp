@@ -1,7 +1,7 @@
 #include <cmath>
 
+#include <samewhere/core/match_from_query.hpp>
 #include <samewhere/pipeline/map_context.hpp>
-#include <samewhere/report/loops.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_competing.hpp>
 
@@ -48,8 +48,8 @@ std::optional<core::CompetingLoopEvidence> MapVersionContext::measure_competing_
 
 std::optional<core::CompetingPlaceEvidence> MapVersionContext::measure_competing_place(
     const core::LedgerRow& row, const core::LedgerRow& other) const {
-  const auto pose = report::match_from_query_of(row.verdict);
-  const auto other_pose = report::match_from_query_of(other.verdict);
+  const auto pose = core::match_from_query_of(row.verdict);
+  const auto other_pose = core::match_from_query_of(other.verdict);
   if (!pose || !other_pose) return std::nullopt;
   if (are_one_place(row.candidate.match, other.candidate.match)) return std::nullopt;
   return verify::measure_competing_place(map_, edge_of(row.candidate, *pose),

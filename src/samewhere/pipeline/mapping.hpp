@@ -21,6 +21,8 @@ class Mapping {
     BundleLink& bundling;
   };
   Mapping(const Config& config, scene::MapVersion so_far, const Asks& asks, KeepMap keep_map);
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
 
   // Does what a message of tracking asks for, and goes on to better the map after the answer.
   void take(const ToMapping& message, const MappingLink::Reply& reply);

@@ -3,57 +3,16 @@
 
 #include <Eigen/LU>
 
-#include <samewhere/core/background.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/pipeline/slam_test_hooks.hpp>
 
 namespace samewhere::pipeline {
 namespace {
 
-template <class Message, class Answer>
-std::unique_ptr<core::Link<Message, Answer>> link_to(
-    typename core::Link<Message, Answer>::Serve stage, bool in_thread, int capacity,
-    core::Dawdle dawdle) {
-  if (!in_thread) return std::make_unique<core::DirectLink<Message, Answer>>(std::move(stage));
-  return std::make_unique<core::ThreadLink<Message, Answer>>(
-      std::move(stage), static_cast<std::size_t>(capacity), std::move(dawdle));
-}
-
-// Mapping asks about a keyframe before it hears the answer to the one `lag` before it.
-std::unique_ptr<LoopLink> link_to(LoopClosing& stage, const Config& config,
-                                  const SlamHooks& hooks) {
-  return link_to<ToLoopClosing, LoopAnswer>(
-      [&stage, lie = hooks.lie](const ToLoopClosing& message, const LoopLink::Reply& reply) {
-        LoopAnswer answer = stage.answer(message);
-        if (lie) lie(message, answer);
-        reply(std::move(answer));
-      },
-      config.threads, config.map.loop_lag_keyframes, hooks.dawdle);
-}
-
-// One full bundle is under way at most. It takes seconds and tracking is to feel little of it.
-std::unique_ptr<BundleLink> link_to(Bundling& stage, const Config& config, const SlamHooks& hooks) {
-  return link_to<BundleAll, scene::Edit>(
-      [&stage, in_thread = config.threads](const BundleAll& message,
-                                           const BundleLink::Reply& reply) {
-        if (in_thread) core::work_in_background();
-        reply(stage.answer(message));
-      },
-      config.threads, 1, hooks.dawdle);
-}
-
-// One keyframe is under way at most.
-std::unique_ptr<MappingLink> link_to(Mapping& stage, const Config& config, const SlamHooks& hooks) {
-  return link_to<ToMapping, MapAnswer>(
-      [&stage](const ToMapping& message, const MappingLink::Reply& reply) {
-        stage.take(message, reply);
-      },
-      config.threads, 1, hooks.dawdle);
-}
-
-// The keyframe and those before it, `num_edges` in all, whose edges to their parents make a chain;
-// nothing if one of them is used or the session begins too late.
+// The chain of `num_edges` odometry edges that ends at the keyframe: the keyframes whose edges to
+// their parents form it. Empty if an edge is used already, or the session has too few.
 std::vector<core::KeyframeId> edges_before(const scene::MapVersion& map, core::KeyframeId id,
                                            int num_edges, const std::vector<bool>& is_used) {
   std::vector<core::KeyframeId> edges;
@@ -72,29 +31,24 @@ geometry::UncertainPose edge_of(const scene::Keyframe& keyframe) {
 
 }  // namespace
 
-Slam::Slam(const Config& config, DepthFrom depth_from, const SlamHooks& hooks)
-    : loop_closing_(config),
-      loop_link_(link_to(loop_closing_, config, hooks)),
-      bundling_(config),
-      bundle_link_(link_to(bundling_, config, hooks)),
-      mapping_(config, {}, {*loop_link_, *bundle_link_}, hooks.keep_map),
-      mapping_link_(link_to(mapping_, config, hooks)),
-      tracking_(config, depth_from, *mapping_link_) {}
+Slam::Slam(const Config& config, DepthFrom depth_from, KeepMap keep_map)
+    : Slam(config, depth_from, SlamTestHooks{.keep_map = std::move(keep_map)}) {}
 
-Slam::Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamHooks& hooks)
-    : loop_closing_(config, known),
-      loop_link_(link_to(loop_closing_, config, hooks)),
-      bundling_(config),
-      bundle_link_(link_to(bundling_, config, hooks)),
-      mapping_(config, known.map, {*loop_link_, *bundle_link_}, hooks.keep_map),
-      mapping_link_(link_to(mapping_, config, hooks)),
-      tracking_(config, known, use == Use::kLocalize, *mapping_link_) {
+Slam::Slam(const Config& config, const scene::StoredMap& known, Use use, KeepMap keep_map)
+    : Slam(config, known, use, SlamTestHooks{.keep_map = std::move(keep_map)}) {}
+
+Slam::Slam(const Config& config, DepthFrom depth_from, const SlamTestHooks& hooks)
+    : stages_(config, hooks), tracking_(config, depth_from, stages_.link()) {}
+
+Slam::Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamTestHooks& hooks)
+    : stages_(config, known, hooks),
+      tracking_(config, known, use == Use::kLocalize, stages_.link()) {
   core::require(!known.map.keyframes.empty(), "a known map holds a keyframe");
 }
 
 void Slam::feed(const core::Frame& frame) {
   core::require(!is_finished_ && !is_broken_, "no frame comes after the last, or after an error");
-  is_broken_ = true;  // until it is known that nothing was thrown
+  is_broken_ = true;  // until nothing was thrown
   tracking_.feed(frame);
   is_broken_ = false;
 }
@@ -103,19 +57,17 @@ void Slam::finish() {
   core::require(!is_finished_ && !is_broken_, "the input ends once, and not after an error");
   is_broken_ = true;
   tracking_.finish();
-  mapping_link_->finish();
-  loop_link_->finish();
-  bundle_link_->finish();
-  ledger_ = loop_closing_.ledger();
-  ledger_.insert(ledger_.end(), mapping_.second_thoughts().begin(),
-                 mapping_.second_thoughts().end());
+  stages_.finish();
+  ledger_ = stages_.loop_closing().ledger();
+  const core::Ledger& changes = stages_.mapping().second_thoughts();
+  ledger_.insert(ledger_.end(), changes.begin(), changes.end());
   is_broken_ = false;
   is_finished_ = true;
 }
 
 const scene::MapVersion& Slam::map() const {
   require_finished();
-  return mapping_.map();
+  return stages_.mapping().map();
 }
 
 const core::Ledger& Slam::ledger() const {
@@ -125,7 +77,7 @@ const core::Ledger& Slam::ledger() const {
 
 std::vector<core::Descriptor> Slam::descriptors() const {
   require_finished();
-  const PlaceIndex& index = loop_closing_.index();
+  const PlaceIndex& index = stages_.loop_closing().index();
   std::vector<core::Descriptor> descriptors;
   for (int i = 0; i < index.num_descriptors(); ++i) descriptors.push_back(index.descriptor(i));
   return descriptors;
@@ -134,9 +86,7 @@ std::vector<core::Descriptor> Slam::descriptors() const {
 core::Timings Slam::timings() const {
   require_finished();
   core::Timings timings = tracking_.timings();
-  timings.add(mapping_.timings());
-  timings.add(loop_closing_.timings());
-  timings.add(bundling_.timings());
+  timings.add(stages_.timings());
   for (const std::string other : {"verify", "correct", "full bundle"})
     for (const double duration_ms : timings.durations_beside("track", other))
       timings.add("track beside " + other, duration_ms);
@@ -145,7 +95,7 @@ core::Timings Slam::timings() const {
 
 double Slam::processor_ms_beside() const {
   require_finished();
-  return mapping_link_->processor_ms() + loop_link_->processor_ms() + bundle_link_->processor_ms();
+  return stages_.processor_ms();
 }
 
 void Slam::require_finished() const {

@@ -1,95 +1,88 @@
 #pragma once
 
-#include <memory>
+#include <string>
 #include <vector>
 
 #include <samewhere/core/truth.hpp>
 #include <samewhere/evaluate/consistency.hpp>
-#include <samewhere/pipeline/loop_closing.hpp>
-#include <samewhere/pipeline/mapping.hpp>
+#include <samewhere/pipeline/stages.hpp>
 #include <samewhere/pipeline/tracking.hpp>
 
 namespace samewhere::pipeline {
 
-// What the owner of a Slam may have done in its stages, in their threads. All may be empty.
-struct SlamHooks {
-  KeepMap keep_map;
-  core::Dawdle dawdle;  // for tests
-  // For tests: may put loops into what loop closing answers, in its thread.
-  std::function<void(const ToLoopClosing& question, LoopAnswer& answer)> lie;
-};
+struct SlamTestHooks;  // slam_test_hooks.hpp
 
-// The whole system: frames in, poses, a map and a ledger of judged loops out. Stages, each of which
-// knows nothing of threads: tracking asks mapping, mapping asks loop closing and, now and then,
-// bundling. Tracking works
-// on the caller's thread; the others on a thread each (`threads`), or on the caller's. When an
-// answer counts is a matter of frames and keyframes, never of time: the results are the same to the
-// bit, however the threads run.
+// Visual SLAM: frames in; poses, a map and a ledger of loop candidates out. Tracking works on the
+// caller's thread. Mapping, loop closing and full bundle adjustment work on a thread each
+// (`threads`), or on the caller's. Results are applied at fixed frame and keyframe numbers, not on
+// arrival, so single- and multi-threaded runs are identical to the bit.
 class Slam {
  public:
+  // `keep_map` is called in mapping's thread, see KeepMap.
   explicit Slam(const Config& config, DepthFrom depth_from = DepthFrom::kSensor,
-                const SlamHooks& hooks = {});
-  // In a map that is there: lost until a place is recognised. kExtend: the map grows from there on;
-  // kLocalize: it stays as it is. The map holds a keyframe, and was made with the settings that
-  // map_header() names.
+                KeepMap keep_map = {});
+  // In a known map: lost until relocalized. kExtend: the map grows from there on; kLocalize: it
+  // stays as it is. The map has a keyframe, and was made with the settings of map_header().
   enum class Use { kExtend, kLocalize };
-  Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamHooks& hooks = {});
+  Slam(const Config& config, const scene::StoredMap& known, Use use, KeepMap keep_map = {});
+  Slam(const Config& config, DepthFrom depth_from, const SlamTestHooks& hooks);
+  Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamTestHooks& hooks);
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
 
-  // Frames are numbered from 0, in session(). Their pictures are shared: nobody writes to them any
-  // more. Throws what a stage threw; then nothing may follow.
+  // Frames are numbered from 0, in session(). Their images are shared and must not be written to.
+  // Throws what a stage threw; after that no call may follow.
   void feed(const core::Frame& frame);
-  // Nothing comes any more: what is under way is done. Throws as feed() does.
+  // The input has ended: completes what is in progress. Throws as feed() does.
   void finish();
 
   std::uint16_t session() const { return tracking_.session(); }
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return tracking_.frames(); }
-  std::uint64_t describer_checksum() const { return loop_closing_.index().describer_checksum(); }
+  std::uint64_t describer_checksum() const {
+    return stages_.loop_closing().index().describer_checksum();
+  }
 
-  // Why there is no pose, as long as there is none: of the views tried last.
-  std::string why_not_started() const { return tracking_.why_not_started(); }
-  // Where the scale of a map without depth is suspected to have changed, in the order of time.
-  const std::vector<track::ScaleDoubt>& scale_doubts() const { return tracking_.scale_doubts(); }
-  // How often the map was given up for a new one, with all poses found in it.
-  int num_starts_given_up() const { return tracking_.num_starts_given_up(); }
+  // State of the session after the last frame.
+  SessionPhase phase() const { return tracking_.phase(); }
+  // Why the last views that were tried did not begin a map, in words.
+  std::string why_not_initialized() const { return tracking_.why_not_initialized(); }
+  // Monocular: where the scale is suspected to have drifted, in the order of time.
+  const std::vector<track::ScaleDriftInterval>& scale_drift() const {
+    return tracking_.scale_drift();
+  }
+  // How often the map, with all its poses, was discarded for a new one.
+  int num_reinitializations() const { return tracking_.num_reinitializations(); }
 
   // From here on: after finish().
   const scene::MapVersion& map() const;
-  // The rows of the loop verifier, and behind them the later ones of the pose graph.
+  // The verdicts of the loop verifier, then the changes that the pose graph made to them.
   const core::Ledger& ledger() const;
-  // What the views that loops are looked for among look like, oldest first.
+  // Of the views that retrieval searches, oldest first.
   std::vector<core::Descriptor> descriptors() const;
   core::Timings timings() const;
-  // Spent by the stages beside the caller's thread.
+  // Of the stages that do not work on the caller's thread.
   double processor_ms_beside() const;
 
  private:
   void require_finished() const;
 
-  // in the order in which they are asked, from the last: each ends before those that it asks
-  LoopClosing loop_closing_;
-  std::unique_ptr<LoopLink> loop_link_;
-  Bundling bundling_;
-  std::unique_ptr<BundleLink> bundle_link_;
-  Mapping mapping_;
-  std::unique_ptr<MappingLink> mapping_link_;
+  Stages stages_;  // tracking sends to them
   Tracking tracking_;
-  core::Ledger ledger_;  // when it is finished
+  core::Ledger ledger_;  // after finish()
   bool is_finished_ = false;
   bool is_broken_ = false;  // a stage has thrown
 };
 
-// Pose of camera 0 at each measured frame, after all corrections: derived from the reference
-// keyframes.
+// Pose of camera 0 at each measured frame, after all corrections, derived from its reference
+// keyframe.
 core::Trajectory trajectory_of(const scene::MapVersion& map,
                                const std::vector<core::FramePose>& frames);
-// The same as if no loop had been closed.
+// The same without loop closures.
 core::Trajectory odometry_of(const scene::MapVersion& map,
                              const std::vector<core::FramePose>& frames);
-// Odometry of a session over chains of num_edges > 0 edges that share none, as well as it is known
-// without loops, with what the drift model says of it.
+// Odometry of a session without loop closures, over disjoint chains of `num_edges` > 0 edges, with
+// the covariance of the drift model.
 std::vector<evaluate::MeasuredMotion> odometry_chains_of(const scene::MapVersion& map,
                                                          std::uint16_t session, int num_edges);
 

@@ -5,7 +5,7 @@
 #include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/pipeline/profiles.hpp>
 #include <samewhere/pipeline/slam.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -52,11 +52,10 @@ TEST(Slam, FramesOfALongStayAreSavedThoughNoKeyframeComes) {
   config.threads = false;
   config.twin.num_frames = 1;
   std::size_t num_saved = 0;
-  SlamHooks hooks;
-  hooks.keep_map = [&](const scene::MapVersion&, const MapNews& news) {
+  const KeepMap keep_map = [&](const scene::MapVersion&, const MapNews& news) {
     num_saved += news.frames.size();
   };
-  Slam slam(config, DepthFrom::kSensor, hooks);
+  Slam slam(config, DepthFrom::kSensor, keep_map);
   std::optional<core::Frame> frame = twin::open_twin(config.source, config.twin)->next();
   constexpr std::size_t kNumFrames = 70;
   for (std::size_t i = 0; i < kNumFrames; ++i) {
@@ -146,11 +145,11 @@ TEST(Slam, FramesBeforeTheMapSayWhatTheyWaitFor) {
     if (i == 0) frame->images[0] = cv::Mat::zeros(480, 640, CV_8UC3);
     slam.feed(*frame);
     if (i == 0) {
-      EXPECT_EQ(slam.why_not_started(),
+      EXPECT_EQ(slam.why_not_initialized(),
                 "0 corners in the picture, expected 50: it is dark, blurred or of one tone");
     }
     if (i == 1) {
-      EXPECT_TRUE(slam.why_not_started().ends_with(
+      EXPECT_TRUE(slam.why_not_initialized().ends_with(
           "has depth, expected 50: the depth pictures are missing or empty"));
     }
   }
@@ -164,7 +163,8 @@ TEST(Slam, OneCameraStartsLateAndThenFollowsTheTruthUpToScale) {
   Config config = short_walk();
   config.source = "twin:office-loop?seed=5&camera=mono";
   const auto source = twin::open_twin(config.source, config.twin);
-  ASSERT_TRUE(is_scale_free(source->info()));
+  ASSERT_FALSE(source->info().has_depth);
+  ASSERT_EQ(source->info().num_cameras, 1);
   Slam slam(config, DepthFrom::kMotion);
   cv::setNumThreads(1);
   while (const auto frame = source->next()) slam.feed(*frame);

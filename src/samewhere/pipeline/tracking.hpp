@@ -1,163 +1,109 @@
 #pragma once
 
-#include <map>
 #include <optional>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include <samewhere/core/frame.hpp>
 #include <samewhere/core/frame_pose.hpp>
 #include <samewhere/core/timing.hpp>
-#include <samewhere/map/mapper.hpp>
 #include <samewhere/pipeline/config.hpp>
-#include <samewhere/pipeline/messages.hpp>
+#include <samewhere/pipeline/frame_log.hpp>
+#include <samewhere/pipeline/initialization.hpp>
+#include <samewhere/pipeline/mapping_exchange.hpp>
 #include <samewhere/pipeline/passing_things.hpp>
-#include <samewhere/pipeline/place_finder.hpp>
-#include <samewhere/scene/local_map.hpp>
+#include <samewhere/pipeline/relocalization.hpp>
+#include <samewhere/pipeline/session.hpp>
+#include <samewhere/pipeline/visible_map.hpp>
 #include <samewhere/scene/map_file.hpp>
-#include <samewhere/track/scale_watch.hpp>
-#include <samewhere/track/starter.hpp>
+#include <samewhere/scene/tracked_view.hpp>
+#include <samewhere/track/scale_drift_detector.hpp>
 #include <samewhere/track/tracker.hpp>
 
 namespace samewhere::pipeline {
 
-// Where the depth of landmarks comes from. kMotion: one camera; the map starts from two views, and
-// its scale is free.
-enum class DepthFrom { kSensor, kMotion };
-
-// The first stage: where am I, and is this view worth keeping? Owns the pose of every frame. It
-// sees the map as mapping answered last; a new keyframe shows in it `map.visible_after_frames`
-// frames later, or at once if tracking is in trouble without it. At most one keyframe is under way.
+// The first stage: poses of the frames, and which of them become keyframes. It uses the map as
+// mapping answered last. A new keyframe is visible `map.visible_after_frames` frames later, or at
+// once if tracking is weak without it.
 class Tracking {
  public:
   // `mapping` outlives this.
   Tracking(const Config& config, DepthFrom depth_from, MappingLink& mapping);
-  // In a map that is there: lost until a place is recognised. Fixed: no keyframe is added.
+  // In a known map: lost until it is relocalized. Fixed: no keyframe is inserted.
   Tracking(const Config& config, const scene::StoredMap& known, bool is_map_fixed,
            MappingLink& mapping);
+  Tracking(const Tracking&) = delete;
+  Tracking& operator=(const Tracking&) = delete;
 
-  // Frames are numbered from 0, in session(). Their pictures are shared: nobody writes to them.
-  std::uint16_t session() const { return session_; }
+  // Frames are numbered from 0, in session(). Their images are shared and must not be written to.
+  std::uint16_t session() const { return log_.session(); }
   void feed(const core::Frame& frame);
   void finish();
 
   // One entry per frame fed.
-  const std::vector<core::FramePose>& frames() const { return frames_; }
-  const core::Timings& timings() const { return timings_; }
-  // Why the views tried last did not start a map.
-  std::string why_not_started() const;
-  // Where the scale of a map without depth is suspected to have changed, in the order of time.
-  const std::vector<track::ScaleDoubt>& scale_doubts() const { return scale_doubts_; }
-  // How often the map was given up for a new one, with all poses found in it.
-  int num_starts_given_up() const { return num_starts_given_up_; }
+  const std::vector<core::FramePose>& frames() const { return log_.frames(); }
+  core::Timings timings() const;
+  SessionPhase phase() const { return state_.phase(); }
+  // Why the last views that were tried did not begin a map, in words.
+  std::string why_not_initialized() const { return initialization_.why_not(); }
+  // Monocular: where the scale is suspected to have drifted, in the order of time.
+  const std::vector<track::ScaleDriftInterval>& scale_drift() const { return scale_drift_; }
+  // How often the map, with all its poses, was discarded for a new one.
+  int num_reinitializations() const { return state_.num_reinitializations(); }
 
  private:
+  using MaybeTracked = std::optional<scene::TrackedView>;
+
+  Tracking(const Config& config, SessionState state, scene::MapVersion map, std::uint16_t session,
+           MappingLink& mapping);
+
+  // A step, in this order.
+  void exchange_with_mapping();
   features::View extract(const core::Frame& frame);
-  // Where am I? Nothing: lost.
-  std::optional<scene::TrackedView> locate(const core::Frame& frame, const features::View& view);
-  std::optional<scene::TrackedView> locate_in_map(const core::Frame& frame,
-                                                  const features::View& view);
-  // Where few features hold a pose or none, in the dark or before bare walls, the depth picture
-  // may: by what moved since the last frame's.
-  std::optional<scene::TrackedView> held_by_depth(const core::Frame& frame,
-                                                  const features::View& view);
-  std::optional<scene::TrackedView> track_from_last(const features::View& view);
-  // The same again, if the map has got nearer; the better of both.
-  void try_again(const features::View& view, std::optional<scene::TrackedView>& best);
-  // Lost: which place of the whole map is this?
-  std::optional<scene::TrackedView> relocalise(const core::Frame& frame,
-                                               const features::View& view);
-  // Whether one can have got there since the last pose. What lies beyond is another place that
-  // looks like this one.
-  bool is_within_reach(const core::FramePose& pose) const;
-  const core::FramePose* last_measured() const;  // nullptr: none in this session
-  Proof proof_to_resume(double stamp_s) const;
-  // The reference goes along with the camera: it is the keyframe that shows most of what the view
-  // shows, however old, and the local map is what lies around it.
-  void follow(scene::TrackedView& tracked);
-  core::FramePose relative_to(core::KeyframeId reference, core::FramePose pose) const;
-  // As odometry knows it: relative to the newest keyframe if the way from there to its reference
-  // takes a loop. What is kept of a frame rests on no loop, or it would stay behind if the loop
-  // were withdrawn, and a keyframe would hold the loop as if it were odometry.
-  core::FramePose by_odometry(const core::FramePose& pose);
-  core::Rigid3 guessed_pose() const;
-  void remember(const scene::TrackedView& tracked);
-  // What a frame without a pose is: lost, or waiting for the map to begin.
-  core::FrameStatus status_without_pose(const features::View& view) const;
-  // Without depth: a pose whose scale is suspected to have changed is weak, and noted.
-  void doubt_scale(scene::TrackedView& tracked);
+  MaybeTracked localize(const core::Frame& frame, const features::View& view);
+  void record(const core::Frame& frame, const features::View& view, const MaybeTracked& tracked);
+  void insert_keyframe(const core::Frame& frame, const MaybeTracked& tracked);
 
-  // The map begins. Nothing: not yet.
-  std::optional<scene::TrackedView> start(const core::Frame& frame, const features::View& view);
-  // One camera: once a second view has parallax against an earlier one.
-  std::optional<scene::TrackedView> start_by_motion(const core::Frame& frame,
-                                                    const features::View& view);
-  // Whether who is lost in this map may give it up for a new one.
-  bool is_start_doubtful(double stamp_s) const;
-  // He does; with depth not at once: what hides the view may pass.
-  std::optional<scene::TrackedView> start_anew(const core::Frame& frame,
-                                               const features::View& view);
-  // No frame so far has a pose.
-  void give_up_poses();
-  // Frames that were passed while the start was awaited: found in the map that it made.
-  void locate_passed(const std::vector<features::View>& views);
-  void begin_tracking(const features::View& view, int num_landmarks);
+  // localize: one for each state.
+  MaybeTracked initialize(const core::Frame& frame, const features::View& view);
+  MaybeTracked track_in_map(const core::Frame& frame, const features::View& view);
+  MaybeTracked relocalize(const core::Frame& frame, const features::View& view);
 
-  bool can_promote_last() const;
-  // The frame that was fed last becomes a keyframe. An empty image: its own is gone.
-  void keep(const scene::TrackedView& tracked, const cv::Mat& image);
-  // The map that shows the keyframe under way; waits for it.
-  void see_kept();
-  MapAnswer wait_for_mapping();
-  void look_around(core::KeyframeId reference);
+  MaybeTracked track_from_last(const features::View& view) const;
+  // After the local map has changed: the pose with more inliers is kept.
+  void track_again(const features::View& view, MaybeTracked& best) const;
+  // With few features, by alignment of the depth image to the one before.
+  MaybeTracked track_by_depth(const core::Frame& frame, const features::View& view);
+  // The reference becomes the keyframe that shows most of the view's landmarks.
+  void switch_reference(scene::TrackedView& tracked);
+  // Monocular: a pose whose scale is suspected to have drifted is weak.
+  void check_scale(scene::TrackedView& tracked);
+  void update_motion_model(const core::Frame& frame, const scene::TrackedView& tracked);
 
-  bool is_kept(const scene::TrackedView& tracked) const;
-  core::Rigid3 world_from(const core::FramePose& pose) const;
-  scene::TrackedView tracked_view(const features::View& view, const track::Track& track) const;
-  std::vector<core::FramePose> unsent_frames();
+  bool may_reinitialize(const features::View& view) const;
+  void discard_poses();
+  // The first view of a monocular pair, and the frames between both.
+  void pose_earlier_frames(const InitialViews& initial);
+
+  bool can_insert_last() const;
+  // The newest frame becomes a keyframe. Empty image: it is no longer known.
+  void send_keyframe(const scene::TrackedView& tracked, const cv::Mat& image);
+  // The map with the keyframe in progress. Waits.
+  void receive_map();
 
   Config config_;
+  bool is_map_fixed_ = false;
   core::Timings timings_;
   track::Tracker tracker_;
-  track::Tracker lost_tracker_;
-  PlaceFinder place_finder_;
+  SessionState state_;
+  Initialization initialization_;
+  Relocalization relocalization_;
+  VisibleMap map_;
+  MappingExchange mapping_;
+  FrameLog log_;
   PassingThings passing_;
-  std::optional<track::Starter> starter_;  // one camera
-  int num_features_ = 0;                   // of the last view that might have started
-  int num_with_depth_ = 0;                 // of these
-  track::ScaleWatch scale_watch_;
-  std::vector<track::ScaleDoubt> scale_doubts_;
-  MappingLink& mapping_;
-
-  std::uint16_t session_ = 0;
-  bool is_map_fixed_ = false;
-  scene::MapVersion map_;  // as it is visible
-  scene::LocalMap local_map_;
-  std::uint64_t num_keyframes_ = 0;  // sent to mapping, or there before
-  std::uint64_t num_given_up_ = 0;   // of these, when the map began anew
-  int num_starts_given_up_ = 0;
-  double started_at_s_ = 0.0;         // stamp of the view that the map began with
-  std::uint64_t first_followed_ = 0;  // tracking was not lost since this one
-  struct Way {
-    std::uint64_t map_number = 0;
-    core::KeyframeId from;
-    core::KeyframeId to;
-    bool operator==(const Way&) const = default;
-  };
-  std::optional<std::pair<Way, bool>> last_way_;  // whether it takes a loop
-  std::map<core::FrameId, core::KeyframeId> keyframe_of_;
-  struct UnderWay {
-    core::KeyframeId keyframe;
-    std::size_t due_at_frame = 0;  // position
-  };
-  std::optional<UnderWay> under_way_;
-
-  std::vector<core::FramePose> frames_;
-  std::size_t num_sent_frames_ = 0;
-  std::optional<scene::TrackedView> last_;  // the frame before, if it was located
-  int num_lost_ = 0;                        // frames since then
-  std::optional<cv::Mat> last_depth_m_;     // of that frame
-  core::Rigid3 last_from_next_;             // motion model: the last step once more
+  track::ScaleDriftDetector scale_drift_detector_;
+  std::vector<track::ScaleDriftInterval> scale_drift_;
 };
 
 }  // namespace samewhere::pipeline

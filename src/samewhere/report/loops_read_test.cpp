@@ -139,7 +139,7 @@ TEST_F(LoopsRead, ALoopThatOverrulesOthersIsReadBackWithItsGain) {
   EXPECT_EQ(read_back.evidence.competing_loop->first_loop, core::CandidateId(4));
   EXPECT_EQ(read_back.evidence.competing_loop->gain, 9.5);
   EXPECT_THAT(core::reason_of(found.at(0).verdict),
-              HasSubstr("the camera where frame 3 was taken, 1.80 m from here, but odometry"));
+              HasSubstr("the place of frame 3 at 1.80 m: odometry supports"));
 }
 
 TEST_F(LoopsRead, ACompetingPlaceIsReadBack) {

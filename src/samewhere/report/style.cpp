@@ -80,13 +80,13 @@ svg text {
 .strip { margin-top: 1rem; }
 .strip svg { display: block; width: 100%; height: 22px; border-radius: 6px; }
 .states i { width: 0.75rem; height: 0.75rem; border: 0; border-radius: 3px; vertical-align: -0.08em; }
-.starting { fill: var(--idle); background: var(--idle); }
+.initializing { fill: var(--idle); background: var(--idle); }
 .tracking { fill: var(--track); background: var(--track); }
 .weak { fill: var(--maybe); background: var(--maybe); }
 .lost { fill: var(--no); background: var(--no); }
-.resumed { fill: var(--resume); background: var(--resume); }
+.relocalized { fill: var(--resume); background: var(--resume); }
 .waiting { fill: var(--bar); background: var(--bar); }
-.legend li.starting, .legend li.tracking, .legend li.weak, .legend li.lost, .legend li.resumed,
+.legend li.initializing, .legend li.tracking, .legend li.weak, .legend li.lost, .legend li.relocalized,
 .legend li.waiting {
   background: none;
 }

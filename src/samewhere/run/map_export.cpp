@@ -49,7 +49,7 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
 
 namespace {
 
-// Of one session: stamps of several begin anew and may be the same.
+// Of one session: stamps of different sessions may be equal.
 std::vector<core::FramePose> frames_of(const scene::StoredMap& stored, const MapExports& wanted) {
   const std::vector<core::FramePose>& all = stored.extras.frames;
   if (all.empty()) return {};

@@ -44,10 +44,11 @@ void require_same_describer(const std::filesystem::path& map, const core::Descri
 MappedSlam::MappedSlam(const pipeline::Config& config, pipeline::DepthFrom depth_from,
                        const MapPlan& plan)
     : config_(config), plan_(plan), is_metric_(depth_from == pipeline::DepthFrom::kSensor) {
-  const pipeline::SlamHooks hooks{
-      .keep_map = [this](const auto& map, const pipeline::MapNews& news) { keep(map, news); }};
+  const pipeline::KeepMap keep_map = [this](const auto& map, const pipeline::MapNews& news) {
+    keep(map, news);
+  };
   if (plan.known.empty()) {
-    slam_.emplace(config, depth_from, hooks);
+    slam_.emplace(config, depth_from, keep_map);
     return;
   }
   using enum scene::MapAccess;
@@ -60,7 +61,7 @@ MappedSlam::MappedSlam(const pipeline::Config& config, pipeline::DepthFrom depth
   if (!stored.extras.descriptors.empty()) known_view_ = stored.extras.descriptors.front();
   slam_.emplace(config, stored,
                 plan.is_known_fixed ? pipeline::Slam::Use::kLocalize : pipeline::Slam::Use::kExtend,
-                hooks);
+                keep_map);
 }
 
 void MappedSlam::feed(core::Frame& frame) {

@@ -32,7 +32,7 @@ class MappedSlam {
   MappedSlam& operator=(const MappedSlam&) = delete;
 
   const pipeline::Slam& slam() const { return *slam_; }
-  // Whether lengths are metres: somebody has measured depth, this run or those that made the map.
+  // Whether the scale is metric: this run or those that made the map measured depth.
   bool is_metric() const { return is_metric_; }
 
   // Of keyframes, once it is finished.

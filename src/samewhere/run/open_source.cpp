@@ -10,7 +10,7 @@
 #include <samewhere/input/open.hpp>
 #include <samewhere/input/rectify.hpp>
 #include <samewhere/run/open_source.hpp>
-#include <samewhere/twin/twin.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere::run {
 

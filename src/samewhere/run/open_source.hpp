@@ -12,8 +12,8 @@ namespace samewhere::run {
 // rectified. Throws InputError.
 std::unique_ptr<core::Source> open_source(const pipeline::Config& config);
 
-// The same for who asks for its truth: what a twin building has to compute for that is computed
-// now, with a progress line on stderr. Throws InputError, and Interrupted after Ctrl-C.
+// The same with ground truth: what a rendered building has to compute for it is computed now, with
+// a progress line on stderr. Throws InputError, and Interrupted after Ctrl-C.
 std::unique_ptr<core::Source> open_source_with_truth(const pipeline::Config& config);
 
 // What SLAM is given of a source: small pictures are enlarged (input/enlarge.hpp), unless

@@ -27,7 +27,7 @@ std::string name_of(const core::LedgerRow& row) {
   return fmt::format("candidate {}", row.candidate.id.index());
 }
 
-// Believed or doubted.
+// As an accepted or a suspended loop.
 bool holds(const MapVersion& map, core::CandidateId cause) {
   const auto is_it = [&](const scene::LoopEdge& loop) { return loop.cause == cause; };
   return std::any_of(map.loops.begin(), map.loops.end(), is_it) ||
@@ -180,9 +180,9 @@ OverriddenMap with_forced(const MapVersion& map, const core::LedgerRow& row,
     changed.rows.push_back(refused(known_of(bent.loop, ledger),
                                    fmt::format("{}, since {} was accepted by hand",
                                                pipeline::bent_by(bent, config), name_of(row))));
-  for (const auto& believed : closing.accepted)
-    if (believed.cause != cause)
-      changed.rows.push_back(accepted(known_of(believed, ledger), config, false));
+  for (const auto& loop : closing.accepted)
+    if (loop.cause != cause)
+      changed.rows.push_back(accepted(known_of(loop, ledger), config, false));
   changed.map = bundled(std::move(correction.map), config);
   return changed;
 }

@@ -60,7 +60,7 @@ class OverrideInRooms : public pipeline::LookAlikeRooms {
   }
 };
 
-TEST_F(OverrideInRooms, AForcedLoopCorrectsTheMapAndSaysWhoSpoke) {
+TEST_F(OverrideInRooms, AForcedLoopCorrectsTheMapAndIsMarkedAsByHand) {
   map_ = with_next(with_next(map_));
   const core::LedgerRow row = row_of(true_loop(13, 1), 3);
   const OverriddenMap changed = with_forced(map_, row, {row}, config_);
@@ -73,10 +73,10 @@ TEST_F(OverrideInRooms, AForcedLoopCorrectsTheMapAndSaysWhoSpoke) {
 }
 
 TEST_F(OverrideInRooms, ARejectedLoopLeavesTheMapAsIfItHadNeverBeen) {
-  const MapVersion believed = closed(map_, lie());
-  ASSERT_GT(num_seen_in_both_rooms(believed), 100);
+  const MapVersion with_false = closed(map_, lie());
+  ASSERT_GT(num_seen_in_both_rooms(with_false), 100);
   const OverriddenMap changed =
-      with_rejected(believed, accepted(row_of(lie(), kLie.index())), config_);
+      with_rejected(with_false, accepted(row_of(lie(), kLie.index())), config_);
   EXPECT_TRUE(changed.map.loops.empty());
   EXPECT_EQ(survivors(changed.map), survivors(map_));
   ASSERT_EQ(changed.rows.size(), 1U);
@@ -91,16 +91,16 @@ TEST_F(OverrideInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
   EXPECT_THAT(why_not_forced(row_of(lie(), 5)), HasSubstr("chi-square"));
 }
 
-// Odometry and a true loop against a lie; a loop inside the first room has no part in it.
+// Odometry and a true loop against a false one; a loop inside the first room has no part in it.
 TEST_F(OverrideInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
   map_ = with_next(with_next(with_next(map_)));
   const scene::LoopEdge inside = loop(3, 0, inverse(truth(0)) * truth(3), core::CandidateId(2000));
   const core::LedgerRow inside_row = accepted(row_of(inside, inside.cause.index()));
   const core::LedgerRow lie_row = accepted(row_of(lie(), kLie.index()));
   const core::LedgerRow row = row_of(true_loop(13, 1), 5);
-  const MapVersion believed = closed(closed(map_, inside), lie());
-  ASSERT_EQ(believed.loops.size(), 2U);
-  const OverriddenMap changed = with_forced(believed, row, {inside_row, lie_row, row}, config_);
+  const MapVersion with_false = closed(closed(map_, inside), lie());
+  ASSERT_EQ(with_false.loops.size(), 2U);
+  const OverriddenMap changed = with_forced(with_false, row, {inside_row, lie_row, row}, config_);
   ASSERT_EQ(changed.rows.size(), 2U) << "what it leaves as it was gets none";
   EXPECT_EQ(changed.rows[0].candidate.id, row.candidate.id);
   const core::LedgerRow& withdrawn = changed.rows[1];
@@ -113,7 +113,7 @@ TEST_F(OverrideInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
 
 TEST_F(OverrideInRooms, WhatCannotBeForcedSaysWhy) {
   const core::LedgerRow row = row_of(lie(), 5);
-  EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop already"));
+  EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop closure already"));
   core::LedgerRow lost = row;
   lost.candidate.origin = core::Origin::kRelocalization;
   EXPECT_THAT(why_not_forced(lost), HasSubstr("is a relocalization candidate"));
@@ -200,7 +200,7 @@ TEST_F(OverrideInAFolder, ACandidateIsShownWithWhatItsViewsShare) {
     }
     return std::string("nothing was said");
   };
-  EXPECT_THAT(why_not_shown(), HasSubstr("map.sw: has no picture of frame 13"));
+  EXPECT_THAT(why_not_shown(), HasSubstr("map.sw: has no thumbnail of frame 13"));
   {
     scene::MapFile file = scene::MapFile::open(map_path(), scene::MapAccess::kExtend);
     file.load();
@@ -324,7 +324,7 @@ TEST_F(OverrideInAFolder, AMapThatAnotherRunHasExtendedIsLeftAlone) {
     edit.keyframes[0].view.frame = core::FrameId(0, 1);
     file.commit(apply(map, edit), {});
   }
-  EXPECT_THAT(why_not_changed(0, Override::kForce), HasSubstr("more than one run"));
+  EXPECT_THAT(why_not_changed(0, Override::kForce), HasSubstr("several runs"));
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace samewhere::run {
 enum class Replay {
   kSame,        // loop or no loop, as before
   kChanged,     //
-  kUnmeasured,  // the next check needs what was never measured: nobody can tell without the
-                // pictures
+  kUnmeasured,  // the next check needs a measurement that the run did not make
+                // (--measure-all)
   kGraph        // still accepted by the verifier; the pose graph that rejected it is not replayed
 };
 

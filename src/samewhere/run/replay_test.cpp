@@ -61,7 +61,7 @@ TEST(Replay, ThePauseFollowsTheNewVerdicts) {
   EXPECT_TRUE(core::is_loop(paused[2].after));
 }
 
-TEST(Replay, ASequenceIsCountedAnewFromWhoeverPassesNow) {
+TEST(Replay, ASequenceIsCountedAgainFromCandidatesThatPassNow) {
   verify::Config few;
   few.require_pose = false;
   few.min_views = 3;

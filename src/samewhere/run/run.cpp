@@ -38,8 +38,8 @@ RunOutcome start_outcome(const pipeline::Config& config, const core::SourceInfo&
   return outcome;
 }
 
-// The frames of a source until it ends, breaks, or somebody presses Ctrl-C, with a progress line on
-// stderr. What ended them is in the outcome's record.
+// The frames of a source until its end, an error or Ctrl-C, with a progress line on stderr. The
+// record of the outcome tells which.
 class FrameFeed {
  public:
   // `source` and `outcome` outlive the feed.
@@ -149,13 +149,13 @@ void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& nam
 }
 
 // "frames 839 to 853: scale 1/8.1 of the usual", of at most three; the numbers are of all.
-report::Figure figure_of(const std::vector<track::ScaleDoubt>& doubts) {
+report::Figure figure_of(const std::vector<track::ScaleDriftInterval>& intervals) {
   constexpr std::size_t kMost = 3;
   report::Figure figure{"scale drift suspected", "", {}};
-  for (std::size_t i = 0; i < doubts.size(); ++i) {
-    const auto first = static_cast<double>(doubts[i].first.index());
-    const auto last = static_cast<double>(doubts[i].last.index());
-    const double factor = doubts[i].factor;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const auto first = static_cast<double>(intervals[i].first.index());
+    const auto last = static_cast<double>(intervals[i].last.index());
+    const double factor = intervals[i].factor;
     figure.numbers.insert(figure.numbers.end(), {first, last, factor});
     if (i >= kMost) continue;
     const std::string of_usual = factor < 1.0 ? fmt::format("1/{:.1f} of the usual", 1.0 / factor)
@@ -163,7 +163,7 @@ report::Figure figure_of(const std::vector<track::ScaleDoubt>& doubts) {
     figure.value +=
         fmt::format("{}frames {} to {}: scale {}", i == 0 ? "" : "; ", first, last, of_usual);
   }
-  if (doubts.size() > kMost) figure.value += fmt::format("; {} more", doubts.size() - kMost);
+  if (intervals.size() > kMost) figure.value += fmt::format("; {} more", intervals.size() - kMost);
   return figure;
 }
 
@@ -184,13 +184,14 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
     record.figures.push_back(
         {"scale", "unknown: one camera without depth; lengths of the results are in map units"});
   }
-  if (!slam.scale_doubts().empty()) {
-    record.figures.push_back(figure_of(slam.scale_doubts()));
+  if (!slam.scale_drift().empty()) {
+    record.figures.push_back(figure_of(slam.scale_drift()));
     spdlog::warn("scale drift suspected: {}", record.figures.back().value);
   }
   if (evaluation.num_measured == 0 && plan.known.empty())
-    record.figures.push_back({"not initialized, at the end", slam.why_not_started()});
-  record.figures.push_back(report::figure("re-initializations", "{}", slam.num_starts_given_up()));
+    record.figures.push_back({"not initialized, at the end", slam.why_not_initialized()});
+  record.figures.push_back(
+      report::figure("re-initializations", "{}", slam.num_reinitializations()));
   record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
                                           num_live(slam.map().keyframes),
                                           num_live(slam.map().landmarks)));

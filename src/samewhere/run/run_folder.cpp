@@ -60,7 +60,7 @@ SlamFindings read_slam_findings(const std::filesystem::path& folder, bool is_sca
     stamp_of[core::FrameId(i)] = frames.stamps_s[i];
   try {
     add_loops(ledger, stamp_of, findings);
-    add_found_again(ledger, stamp_of, frames.resumed, findings);
+    add_relocalized(ledger, stamp_of, frames.relocalized, findings);
   } catch (const std::out_of_range&) {
     throw core::InputError((folder / "loops.json").string() +
                            ": a loop names a frame that frames.csv does not have");
@@ -138,7 +138,7 @@ report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::
                           {picture_of(file, match.frame, path), match.image_size_px},
                           {}};
   const features::Config config = config_of_run(folder).features;
-  // in this order, as the judge does: who is clearly nearest depends on it
+  // in this order, as the verifier does: the ratio test depends on it
   for (const auto& found :
        features::match_pair(match.features->descriptors, query.features->descriptors, config)) {
     pair.matches_px.emplace_back(query.features->raw_px[static_cast<std::size_t>(found.second)],

@@ -32,8 +32,8 @@ core::Ledger ledger_of_run(const std::filesystem::path& folder);
 const core::LedgerRow& row_of(const core::Ledger& ledger, std::size_t candidate,
                               const std::filesystem::path& folder);
 
-// A candidate of a finished run with both views, from its map. Without depth the judge may have
-// looked at who holds a culled keyframe instead, and counted other matches. Throws InputError if
+// A candidate of a finished run with both views, from its map. Without depth the verifier may have
+// used the keyframe that replaced a culled one, and counted other matches. Throws InputError if
 // there is no map (recognition alone makes none, and a run with --map adds to that of another), the
 // query was lost, or the map has no picture of one of them.
 report::PairRecord pair_of_run(const std::filesystem::path& folder, const core::LedgerRow& row);

@@ -75,26 +75,27 @@ evaluate::AcceptedLoop loop_of(const core::LedgerRow& row, const StampOf& stamp_
   return loop;
 }
 
-// Who was found again, from one place that the judge told of his view.
-struct FoundAgain {
-  evaluate::AcceptedLoop loop;  // its pose: where the trajectory has him, whatever the judge said
-  double apart_m = 0.0;         // from where the judge would have him
+// A relocalization, by one accepted relocalization candidate.
+struct Relocalized {
+  evaluate::AcceptedLoop loop;  // its pose is that of the trajectory, not of the candidate
+  double apart_m = 0.0;         // between the two
 };
 
-std::optional<FoundAgain> found_again(const evaluate::AcceptedLoop& told,
-                                      const core::Trajectory& trajectory) {
+std::optional<Relocalized> relocalization_of(const evaluate::AcceptedLoop& told,
+                                             const core::Trajectory& trajectory) {
   const auto world_from_query = evaluate::truth_at(trajectory, told.query_stamp_s);
   const auto world_from_match = evaluate::truth_at(trajectory, told.match_stamp_s);
   if (!told.match_from_query || !world_from_query || !world_from_match) return std::nullopt;
-  FoundAgain found{told, 0.0};
+  Relocalized found{told, 0.0};
   found.loop.match_from_query = inverse(*world_from_match) * *world_from_query;
   found.apart_m =
       (told.match_from_query->translation - found.loop.match_from_query->translation).norm();
   return found;
 }
 
-// Of places where he is, the one seen first: it is the visit that he joins. Else the nearest.
-bool speaks_rather(const FoundAgain& a, const FoundAgain& b) {
+// Of candidates at the pose of the trajectory the earliest match: the visit that is joined. Else
+// the nearest.
+bool is_better(const Relocalized& a, const Relocalized& b) {
   constexpr double kThere_m = 0.2;
   const bool is_a_there = a.apart_m <= kThere_m;
   const bool is_b_there = b.apart_m <= kThere_m;
@@ -102,9 +103,9 @@ bool speaks_rather(const FoundAgain& a, const FoundAgain& b) {
   return a.apart_m < b.apart_m;
 }
 
-// Whether an earlier visit was joined by who was found again in this one.
-bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& found_again) {
-  return std::any_of(found_again.loops.begin(), found_again.loops.end(), [&](const auto& checked) {
+// Whether a relocalization in this revisit joined an earlier visit.
+bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& relocalized) {
+  return std::any_of(relocalized.loops.begin(), relocalized.loops.end(), [&](const auto& checked) {
     return checked.truth == evaluate::LoopTruth::kTrue && checked.loop.match < revisit.first &&
            revisit.first <= checked.loop.query && checked.loop.query <= revisit.last;
   });
@@ -141,21 +142,21 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
   }
 }
 
-void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
+void add_relocalized(const core::Ledger& ledger, const StampOf& stamp_of,
                      const std::set<core::FrameId>& resumed, SlamFindings& findings) {
-  std::map<core::FrameId, FoundAgain> best;
+  std::map<core::FrameId, Relocalized> best;
   for (const auto* row : report::final_rows(ledger)) {
     const core::Candidate& candidate = row->candidate;
     const bool is_told = candidate.origin == core::Origin::kRelocalization &&
                          core::is_loop(row->verdict) &&
                          candidate.match.session() == candidate.query.session();
     if (!is_told || !resumed.contains(candidate.query)) continue;
-    const auto found = found_again(loop_of(*row, stamp_of), findings.trajectory);
+    const auto found = relocalization_of(loop_of(*row, stamp_of), findings.trajectory);
     if (!found) continue;
     const auto [it, is_first] = best.try_emplace(candidate.query, *found);
-    if (!is_first && speaks_rather(*found, it->second)) it->second = *found;
+    if (!is_first && is_better(*found, it->second)) it->second = *found;
   }
-  for (const auto& [frame, found] : best) findings.found_again.push_back(found.loop);
+  for (const auto& [frame, found] : best) findings.relocalized.push_back(found.loop);
 }
 
 SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
@@ -171,7 +172,7 @@ SlamFindings findings_of(const report::RunRecord& record, bool is_scale_free) {
     if (frame.pose.status == core::FrameStatus::kResumed) resumed.insert(frame.pose.frame);
   }
   add_loops(record.ledger, stamp_of, findings);
-  add_found_again(record.ledger, stamp_of, resumed, findings);
+  add_relocalized(record.ledger, stamp_of, resumed, findings);
   return findings;
 }
 
@@ -194,10 +195,10 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   evaluation.num_of_known_map = findings.num_of_known_map;
   evaluation.num_known_places = findings.num_known_places;
   evaluation.loops = evaluate::check_loops(findings.loops, truth, scale);
-  evaluation.found_again = evaluate::check_loops(findings.found_again, truth, scale);
+  evaluation.relocalized = evaluate::check_loops(findings.relocalized, truth, scale);
   for (const auto& revisit : truth.revisits.value_or(std::vector<core::FrameSpan>{})) {
     const bool is_joined = evaluate::is_closed(revisit, evaluation.loops.loops) ||
-                           is_rejoined(revisit, evaluation.found_again);
+                           is_rejoined(revisit, evaluation.relocalized);
     evaluation.num_rejoined += is_joined ? 1 : 0;
   }
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
@@ -271,7 +272,7 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   if (loops.num_revisits > 0) {
     figures.push_back(figure("revisits closed", "{} of {}", loops.num_closed, loops.num_revisits));
   }
-  if (const auto& again = evaluation.found_again; !again.loops.empty()) {
+  if (const auto& again = evaluation.relocalized; !again.loops.empty()) {
     figures.push_back(figure("relocalizations: correct / wrong / unknown", "{} / {} / {}",
                              again.num_true, again.num_false, again.num_unknown));
     if (loops.num_revisits > 0) {

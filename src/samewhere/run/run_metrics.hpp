@@ -26,13 +26,13 @@ struct SlamFindings {
   int num_of_known_map = 0;  // beside these: matches are frames of the map that the run started in
   int num_known_places = 0;  // of those, accepted
   std::vector<evaluate::AcceptedLoop> loops;
-  // Who was lost, where he was found: by the place that was recognised in that view.
-  std::vector<evaluate::AcceptedLoop> found_again;
+  // Relocalizations, each with the place that was recognized in its view.
+  std::vector<evaluate::AcceptedLoop> relocalized;
   std::vector<core::FramePair> matching;  // candidates in which enough features matched
   bool is_scale_free = false;             // monocular: aligned with a scale
   // Odometry by the number of edges that it is composed of; empty if not known, or without a scale.
   std::map<int, std::vector<evaluate::MeasuredMotion>> odometry_chains;
-  // Loops of the judge that the pose graph does not believe, by when it found out.
+  // Loops of the verifier that the pose graph rejected, at once or later.
   int num_refused_by_graph = 0;
   int num_withdrawn = 0;
 };
@@ -43,10 +43,10 @@ using StampOf = std::map<core::FrameId, double>;  // seconds
 // What a ledger says of loops. Throws std::out_of_range for a loop of a frame without a stamp.
 void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings& findings);
 
-// What it says of who was lost, of the frames in which he was found: the place in which he is by
-// findings.trajectory. Places of another session are left out, as no truth knows them. Throws as
-// add_loops() does.
-void add_found_again(const core::Ledger& ledger, const StampOf& stamp_of,
+// Adds the relocalizations of the ledger, of the frames at which tracking was relocalized, with the
+// pose of findings.trajectory. Places of another session are left out, as no truth knows them.
+// Throws as add_loops() does.
+void add_relocalized(const core::Ledger& ledger, const StampOf& stamp_of,
                      const std::set<core::FrameId>& resumed, SlamFindings& findings);
 
 // How good a SLAM run is. Parts without a truth are absent.
@@ -62,8 +62,8 @@ struct SlamEvaluation {
   int num_of_known_map = 0;
   int num_known_places = 0;
   evaluate::LoopCheck loops;
-  evaluate::LoopCheck found_again;
-  int num_rejoined = 0;  // revisits with a right loop, or of one who was rightly found again
+  evaluate::LoopCheck relocalized;
+  int num_rejoined = 0;  // revisits with a true loop or a correct relocalization
   int num_refused_by_graph = 0;
   int num_withdrawn = 0;
   std::optional<int> num_aliased_matching;  // of the candidates; only if the truth names any

@@ -15,11 +15,11 @@ core::Rigid3 at_x(double x_m) {
   return pose;
 }
 
-// Along a corridor, one metre a second, and after ten seconds at its start again. Somebody is lost
-// in frames 10 and 11, and found in 12; a copy of the corridor begins at frame 5.
-class LostAndFound : public testing::Test {
+// Along a corridor, one metre a second, and after ten seconds at its start again. Tracking is lost
+// in frames 10 and 11, and relocalized in 12; a copy of the corridor begins at frame 5.
+class Relocalizations : public testing::Test {
  protected:
-  LostAndFound() {
+  Relocalizations() {
     for (int i = 0; i < kNumFrames; ++i) {
       stamp_of_[core::FrameId(static_cast<std::uint64_t>(i))] = i;
       truth_.trajectory.push_back({static_cast<double>(i), at_x(i % 10)});
@@ -38,14 +38,14 @@ class LostAndFound : public testing::Test {
                        loop});
   }
 
-  // Where he believes that he is from frame 12 on.
+  // With this estimated position from frame 12 on.
   SlamEvaluation evaluated_if_found_at(double x_m) {
     for (int i = 0; i < kNumFrames; ++i) {
       if (i < 10) findings_.trajectory.push_back({static_cast<double>(i), at_x(i)});
       if (i >= 12) findings_.trajectory.push_back({static_cast<double>(i), at_x(x_m + i - 12)});
     }
     add_loops(ledger_, stamp_of_, findings_);
-    add_found_again(ledger_, stamp_of_, {core::FrameId(12)}, findings_);
+    add_relocalized(ledger_, stamp_of_, {core::FrameId(12)}, findings_);
     return evaluate_slam(findings_, truth_);
   }
 
@@ -66,8 +66,8 @@ std::string figure(const SlamEvaluation& evaluation, const std::string& name) {
 constexpr const char* kFound = "relocalizations: correct / wrong / unknown";
 constexpr const char* kRejoined = "revisits closed or relocalized";
 
-TEST_F(LostAndFound, InTheRightPlaceWhichIsNoLoop) {
-  recognised(12, 5, 2.0);  // believed by one view, but it is not where he ends
+TEST_F(Relocalizations, InTheRightPlaceWhichIsNoLoop) {
+  recognised(12, 5, 2.0);  // accepted for one view, but not the final place
   recognised(12, 0, 2.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(2.0);
   EXPECT_EQ(figure(evaluation, kFound), "1 / 0 / 0");
@@ -76,7 +76,7 @@ TEST_F(LostAndFound, InTheRightPlaceWhichIsNoLoop) {
   EXPECT_EQ(evaluation.loops.num_true, 0);
 }
 
-TEST_F(LostAndFound, InItsCopyWhichIsWrong) {
+TEST_F(Relocalizations, InItsCopyWhichIsWrong) {
   recognised(12, 5, 2.0);
   recognised(12, 0, 2.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(7.0);
@@ -85,14 +85,14 @@ TEST_F(LostAndFound, InItsCopyWhichIsWrong) {
 }
 
 // The place was told of an earlier view, and this one only of the right one.
-TEST_F(LostAndFound, WhereHeIsCountsAndNotWhatTheJudgeSays) {
+TEST_F(Relocalizations, WhereHeIsCountsAndNotWhatTheJudgeSays) {
   recognised(12, 0, 2.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(7.0);
   EXPECT_EQ(figure(evaluation, kFound), "0 / 1 / 0");
   EXPECT_EQ(figure(evaluation, kRejoined), "0 of 1");
 }
 
-TEST_F(LostAndFound, OfTwoVisitsTheEarlierIsJoined) {
+TEST_F(Relocalizations, OfTwoVisitsTheEarlierIsJoined) {
   truth_.revisits = {{8, 15}};
   recognised(12, 9, -7.0);
   recognised(12, 0, 2.1);
@@ -101,15 +101,15 @@ TEST_F(LostAndFound, OfTwoVisitsTheEarlierIsJoined) {
   EXPECT_EQ(figure(evaluation, kRejoined), "1 of 1");
 }
 
-TEST_F(LostAndFound, WhatAFrameSaysThatIsStillLostIsNotAsked) {
+TEST_F(Relocalizations, WhatAFrameSaysThatIsStillLostIsNotAsked) {
   recognised(11, 0, 1.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(2.0);
   EXPECT_EQ(figure(evaluation, kFound), "");
   EXPECT_EQ(evaluation.num_rejoined, 0);
 }
 
-// Who was lost for a moment and is found where he just was has joined no earlier visit.
-TEST_F(LostAndFound, InTheSameVisitJoinsNothing) {
+// A relocalization in the place of the last pose joins no earlier visit.
+TEST_F(Relocalizations, InTheSameVisitJoinsNothing) {
   truth_.revisits = {{0, 15}};
   recognised(12, 0, 2.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(2.0);

@@ -59,7 +59,7 @@ std::optional<optimize::FocalLengthFit> fit(const scene::MapVersion& map,
   return optimize::fit_focal_length(problem, kGuess_sigma);
 }
 
-// A map made with a focal length far off is bent: it is made once more with the better one.
+// A map made with a wrong focal length is distorted: it is made once more with the better one.
 void refine(const pipeline::Config& config, SelfCalibration& calibration) {
   constexpr int kMostPasses = 3;
   constexpr double kSettled = 0.02;

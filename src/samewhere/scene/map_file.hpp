@@ -58,6 +58,8 @@ class MapFile {
   ~MapFile();
 
   const MapHeader& header() const;
+  // Whether it is of the version that is written; maps of the version before are read only.
+  bool is_current() const;
   // Throws InputError naming the first setting, by name, that differs, and both values.
   void require_same_settings(const MapHeader& expected) const;
 

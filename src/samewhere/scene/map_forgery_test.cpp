@@ -318,8 +318,8 @@ class Forger {
 
  private:
   static constexpr const char* kTables[] = {
-      "header", "state",        "rig",   "keyframe", "view",       "slots",  "landmark",
-      "loop",   "doubted_loop", "merge", "frame",    "descriptor", "ledger", "thumbnail"};
+      "header", "state",          "rig",   "keyframe", "view",       "slots",  "landmark",
+      "loop",   "suspended_loop", "merge", "frame",    "descriptor", "ledger", "thumbnail"};
 
   std::string by_sql(const char* sql) {
     run_sql(path_, fmt::format(fmt::runtime(sql), table_, number_));

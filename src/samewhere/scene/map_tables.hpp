@@ -19,7 +19,8 @@ inline constexpr char kView[] = "view";    // of keyframes, same numbers; never 
 inline constexpr char kSlots[] = "slots";  // of keyframes, same numbers
 inline constexpr char kLandmark[] = "landmark";
 inline constexpr char kLoop[] = "loop";
-inline constexpr char kSuspendedLoop[] = "doubted_loop";  // its name in the file
+inline constexpr char kSuspendedLoop[] = "suspended_loop";
+inline constexpr char kSuspendedLoopBefore7[] = "doubted_loop";  // its name in version 6
 inline constexpr char kMerge[] = "merge";
 inline constexpr char kFrame[] = "frame";            // number: the frame's id
 inline constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
@@ -29,10 +30,18 @@ inline constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyfra
                                           kSlots,  kLandmark,   kLoop,   kSuspendedLoop, kMerge,
                                           kFrame,  kDescriptor, kLedger, kThumbnail};
 
-// 5: thumbnails.
-inline constexpr std::int64_t kMapFileVersion = 6;
-inline constexpr FileKind kMapKind{"samewhere map", 0x534d5748 /* "SMWH" */, kMapFileVersion,
-                                   kTables};
+inline constexpr const char* kTablesBefore7[] = {kHeader,   kState,    kRig,
+                                                 kKeyframe, kView,     kSlots,
+                                                 kLandmark, kLoop,     kSuspendedLoopBefore7,
+                                                 kMerge,    kFrame,    kDescriptor,
+                                                 kLedger,   kThumbnail};
+
+// 5: thumbnails. 6: cameras of maps are pinholes. 7: table suspended_loop.
+inline constexpr std::int64_t kMapFileVersion = 7;
+inline constexpr FileKind kMapKindBefore7{"samewhere map", 0x534d5748 /* "SMWH" */, 6,
+                                          kTablesBefore7};
+inline constexpr FileKind kMapKind{"samewhere map", 0x534d5748, kMapFileVersion, kTables,
+                                   &kMapKindBefore7};
 
 // Number of rows after a commit, to detect missing rows (but not thumbnails, which no other row
 // names).

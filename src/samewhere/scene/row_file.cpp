@@ -77,11 +77,18 @@ void check_is_file(const std::filesystem::path& path, const FileKind& kind) {
   }
 }
 
-void check_kind(Database& database, const FileKind& kind) {
+// The kind with the version of the file: `kind` or the one before.
+const FileKind& kind_of(Database& database, const FileKind& kind, OpenMode mode) {
   if (database.number("PRAGMA application_id") != kind.magic)
     refuse(database.path(), fmt::format("is no {} but another SQLite file", kind.name));
   const std::int64_t version = database.number("PRAGMA user_version");
-  if (version == kind.version) return;
+  if (version == kind.version) return kind;
+  const bool is_before = kind.before != nullptr && version == kind.before->version;
+  if (is_before && mode == OpenMode::kRead) return *kind.before;
+  if (is_before)
+    refuse(database.path(), fmt::format("is a {} of version {}, which is read only; expected "
+                                        "version {}: `samewhere map FILE upgrade` makes it",
+                                        kind.name, version, kind.version));
   refuse(database.path(), fmt::format("is a {} of version {}; expected version {}", kind.name,
                                       version, kind.version));
 }
@@ -147,6 +154,7 @@ RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind,
     auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
     remove_logs(path);
     RowFile file(std::make_unique<Database>(path, OpenMode::kWrite), std::move(lock));
+    file.version_ = kind.version;
     file.begin_writing();
     return file;
   } catch (const core::InputError&) {
@@ -193,8 +201,9 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
     return RowFile(std::make_unique<Database>(path, mode), std::move(lock));
   };
   RowFile file = opened();
-  check_kind(*file.database_, kind);
-  check_schema(*file.database_, kind);
+  const FileKind& found = kind_of(*file.database_, kind, mode);
+  check_schema(*file.database_, found);
+  file.version_ = found.version;
   file.database_->check_pages();
   return file;
 }

@@ -17,6 +17,7 @@ struct FileKind {
   std::int64_t magic = 0;               // SQLite's application_id
   std::int64_t version = 0;             // SQLite's user_version
   std::span<const char* const> tables;  // a message calls a row "TABLE NUMBER"
+  const FileKind* before = nullptr;     // the version before, which can be read and not written
 };
 
 // An SQLite file of tables of numbered rows of bytes, each with a checksum. One program writes to
@@ -66,6 +67,8 @@ class RowFile {
   std::optional<std::string> find(const char* table, std::int64_t number);
 
   const std::filesystem::path& path() const { return database_->path(); }
+  // Of its kind.
+  std::int64_t version() const { return version_; }
 
  private:
   // With a lock it is written.
@@ -77,6 +80,7 @@ class RowFile {
   std::shared_ptr<const void> copy_;  // that is read instead; removed with the last owner
   std::unique_ptr<WriterLock> lock_;  // of the writer; released after the connection
   std::unique_ptr<Database> database_;
+  std::int64_t version_ = 0;
   bool has_log_ = false;
   std::map<std::string, Statement> statements_;  // by their text; gone before the database
 };

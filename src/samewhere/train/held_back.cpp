@@ -6,7 +6,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/train/held_back.hpp>
-#include <samewhere/twin/spec.hpp>
+#include <samewhere/twin/building/spec.hpp>
 
 namespace samewhere::train {
 namespace {

@@ -20,7 +20,7 @@
 #include <samewhere/train/held_back.hpp>
 #include <samewhere/train/image_set.hpp>
 #include <samewhere/train/sha256.hpp>
-#include <samewhere/twin/studio.hpp>
+#include <samewhere/twin/front/studio.hpp>
 
 namespace samewhere::train {
 namespace {

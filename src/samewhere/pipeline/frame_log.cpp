@@ -1,0 +1,37 @@
+#include <algorithm>
+#include <utility>
+
+#include <samewhere/pipeline/frame_log.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+// An hour at 30 Hz, as address space: memory is taken as frames come. A vector that grows by
+// copying leaves as much again behind.
+constexpr std::size_t kReservedFrames = 108000;
+
+}  // namespace
+
+FrameLog::FrameLog(std::uint16_t session) : session_(session) { frames_.reserve(kReservedFrames); }
+
+const core::FramePose* FrameLog::last_measured() const {
+  const auto last = std::find_if(frames_.rbegin(), frames_.rend(),
+                                 [](const core::FramePose& frame) { return frame.is_measured; });
+  return last == frames_.rend() ? nullptr : &*last;
+}
+
+void FrameLog::discard_poses() {
+  for (auto& frame : frames_) {
+    const core::FrameStatus status =
+        is_waiting(frame.status) ? frame.status : core::FrameStatus::kLost;
+    frame = {.frame = frame.frame, .stamp_s = frame.stamp_s, .status = status};
+  }
+  num_sent_ = 0;
+}
+
+std::vector<core::FramePose> FrameLog::take_unsent() {
+  const auto first = static_cast<std::ptrdiff_t>(std::exchange(num_sent_, frames_.size()));
+  return {frames_.begin() + first, frames_.end()};
+}
+
+}  // namespace samewhere::pipeline

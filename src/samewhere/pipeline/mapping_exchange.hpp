@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include <samewhere/core/timing.hpp>
+#include <samewhere/pipeline/messages.hpp>
+
+namespace samewhere::pipeline {
+
+// Tracking's end of the link to mapping. At most one keyframe is in progress: sent, and not yet
+// visible to tracking. Its map is due `visible_after_frames` frames later; earlier if tracking
+// needs it and waits.
+class MappingExchange {
+ public:
+  // `link` outlives this. `num_keyframes`: of a known map.
+  MappingExchange(MappingLink& link, int visible_after_frames, std::uint64_t num_keyframes);
+  MappingExchange(const MappingExchange&) = delete;
+  MappingExchange& operator=(const MappingExchange&) = delete;
+
+  // The map that begins with a StartMap or StartMapByMotion; an earlier one is discarded. Waits.
+  scene::MapVersion initialize(ToMapping start);
+  // Becomes next_keyframe(); its frame is the last one of `frames`.
+  void insert(scene::TrackedView tracked, const cv::Mat& image,
+              std::vector<core::FramePose> frames);
+  bool is_keyframe_in_progress() const { return in_progress_.has_value(); }
+  bool is_due(std::size_t num_frames) const;
+  struct VisibleKeyframe {
+    core::KeyframeId id;
+    scene::MapVersion map;  // with the keyframe
+  };
+  // The keyframe in progress. Waits.
+  VisibleKeyframe receive();
+  // Places of the whole map that the view may show. Waits.
+  MapAnswer find_places(const features::View& view, const cv::Mat& image);
+  // Frames without a keyframe.
+  void save(std::vector<core::FramePose> frames);
+  void finish(std::vector<core::FramePose> frames);
+
+  // The frame is a keyframe of the map that begins.
+  void note_keyframe(core::FrameId frame) { keyframes_.insert(frame); }
+  bool is_keyframe(core::FrameId frame) const { return keyframes_.contains(frame); }
+  core::KeyframeId next_keyframe() const { return core::KeyframeId(num_keyframes_); }
+  // All that were sent, or known before; those of the current map.
+  std::uint64_t num_keyframes() const { return num_keyframes_; }
+  std::uint64_t num_keyframes_of_map() const { return num_keyframes_ - num_discarded_; }
+
+  const core::Timings& timings() const { return timings_; }
+
+ private:
+  struct InProgress {
+    core::KeyframeId id;
+    std::size_t due_at_frame = 0;  // position
+  };
+
+  MapAnswer wait();
+
+  MappingLink& link_;
+  std::size_t visible_after_frames_ = 0;
+  core::Timings timings_;
+  std::uint64_t num_keyframes_ = 0;
+  std::uint64_t num_discarded_ = 0;
+  std::set<core::FrameId> keyframes_;  // frames of the current map
+  std::optional<InProgress> in_progress_;
+};
+
+}  // namespace samewhere::pipeline
