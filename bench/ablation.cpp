@@ -1,4 +1,5 @@
-// ablation: what does each check of the judge buy? Finished runs are judged anew without it.
+// ablation: which loops would be accepted without one check of the loop verifier? Replays the
+// ledgers of finished runs.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -21,32 +22,33 @@ namespace {
 
 struct Variant {
   std::string name;
-  std::vector<std::string> assignments;  // that let all through where the check was
+  std::vector<std::string> assignments;  // that disable the check
 };
 
 std::vector<Variant> variants() {
   const std::string no_odometry = "verify.max_odometry_chi_square=1e9";
-  const std::string no_rival = "verify.max_competing_chi_square=1e9";
-  const std::string no_other_place = "verify.max_competing_place_ratio=1e9";
+  const std::string no_competing_loop = "verify.max_competing_chi_square=1e9";
+  const std::string no_competing_place = "verify.max_competing_place_ratio=1e9";
   return {{"nothing", {}},
           {"inliers: 7 are enough", {"verify.min_inliers=7", "verify.min_matches=7"}},
           {"spread", {"verify.min_spread_ratio=0"}},
           {"depths agree, where both views have some",
            {"verify.max_pose_difference_m=100", "verify.max_pose_difference_rad=3.2"}},
           {"odometry gate", {no_odometry}},
-          {"rival: the last loop", {no_rival}},
-          {"rival: another place for the same view", {no_other_place}},
-          {"odometry gate and the last loop", {no_odometry, no_rival}},
-          {"odometry gate and both rivals", {no_odometry, no_rival, no_other_place}},
+          {"competing hypothesis: the last loop", {no_competing_loop}},
+          {"competing hypothesis: another place for the same view", {no_competing_place}},
+          {"odometry gate and the last loop", {no_odometry, no_competing_loop}},
+          {"odometry gate and both competing hypotheses",
+           {no_odometry, no_competing_loop, no_competing_place}},
           {"all but inliers",
-           {no_odometry, no_rival, no_other_place, "verify.min_spread_ratio=0",
+           {no_odometry, no_competing_loop, no_competing_place, "verify.min_spread_ratio=0",
             "verify.max_pose_difference_m=100", "verify.max_pose_difference_rad=3.2"}}};
 }
 
 struct Counts {
-  int num_right = 0;
-  int num_wrong = 0;
-  int num_first = 0;  // of the wrong ones: the place was not in the map yet, nothing can be a rival
+  int num_true = 0;
+  int num_false = 0;
+  int num_first = 0;  // of the false ones: the place is not in the map, so no hypothesis competes
   int num_unknown = 0;
   int num_revisits = 0;
   int num_closed = 0;
@@ -68,7 +70,7 @@ Recorded recorded(const std::string& folder) {
   return run;
 }
 
-// On an earlier visit: before the time in which views are no candidates for each other.
+// On an earlier visit: before the window in which views are no candidates for each other.
 bool was_seen_before(const core::Truth& truth, int query, double window_s) {
   const auto stamp_s = [&](int i) { return truth.trajectory[static_cast<std::size_t>(i)].stamp_s; };
   for (int earlier = 0; earlier < query && stamp_s(earlier) < stamp_s(query) - window_s;
@@ -85,18 +87,18 @@ void add(const core::Ledger& ledger, const core::Truth& truth, double window_s, 
   run::SlamFindings findings;
   run::add_loops(ledger, stamp_of, findings);
   const evaluate::LoopCheck check = evaluate::check_loops(findings.loops, truth);
-  counts.num_right += check.num_true;
-  counts.num_wrong += check.num_false;
+  counts.num_true += check.num_true;
+  counts.num_false += check.num_false;
   counts.num_unknown += check.num_unknown;
   counts.num_revisits += check.num_revisits;
   counts.num_closed += check.num_closed;
   for (const evaluate::CheckedLoop& checked : check.loops) {
-    const bool is_wrong = checked.truth == evaluate::LoopTruth::kFalse;
-    if (is_wrong && !was_seen_before(truth, checked.loop.query, window_s)) ++counts.num_first;
+    const bool is_false = checked.truth == evaluate::LoopTruth::kFalse;
+    if (is_false && !was_seen_before(truth, checked.loop.query, window_s)) ++counts.num_first;
   }
 }
 
-core::Ledger judged_anew(const Recorded& run, const std::vector<std::string>& assignments) {
+core::Ledger replayed(const Recorded& run, const std::vector<std::string>& assignments) {
   const verify::Config config = run::config_of_run(run.folder, assignments).verify;
   core::Ledger ledger;
   for (const auto& row : run::replay(run.ledger, config))
@@ -106,8 +108,8 @@ core::Ledger judged_anew(const Recorded& run, const std::vector<std::string>& as
 
 std::vector<std::string> row_of(const std::string& name, const Counts& counts) {
   return {name,
-          std::to_string(counts.num_right),
-          std::to_string(counts.num_wrong),
+          std::to_string(counts.num_true),
+          std::to_string(counts.num_false),
           std::to_string(counts.num_first),
           std::to_string(counts.num_unknown),
           fmt::format("{} of {}", counts.num_closed, counts.num_revisits)};
@@ -123,12 +125,12 @@ void measure(const std::vector<std::string>& folders, const std::string& csv_fil
     const Recorded run = recorded(folder);
     add(run.ledger, run.truth, run.window_s, as_it_was);
     for (std::size_t i = 0; i < all.size(); ++i)
-      add(judged_anew(run, all[i].assignments), run.truth, run.window_s, counts[i]);
+      add(replayed(run, all[i].assignments), run.truth, run.window_s, counts[i]);
     progress.update(++num_done);
   }
   progress.finish();
   Table table{
-      {"left out", "right", "wrong", "of these first look-alikes", "unknown", "revisits closed"},
+      {"left out", "true", "false", "of these first look-alikes", "unknown", "revisits closed"},
       {}};
   table.rows.push_back(row_of("(the run itself)", as_it_was));
   for (std::size_t i = 0; i < all.size(); ++i) table.rows.push_back(row_of(all[i].name, counts[i]));
@@ -140,12 +142,9 @@ std::function<void()> set_up(CLI::App& app) {
   const auto csv_file = std::make_shared<std::string>();
   app.name("ablation");
   app.description(
-      "Loops that the judge would accept in finished runs with depth if one of its checks were "
-      "left "
-      "out, by replay: what no run measured behind a check passes, and what the graph of loops or "
-      "a "
-      "later loop made of them is not known. A first look-alike: nothing of the place was seen "
-      "on an earlier visit.");
+      "Loops that the loop verifier would accept in finished runs with depth without one of its "
+      "checks, by replay. What was not measured behind a check passes; consistency with other "
+      "loops is not replayed. First look-alike: no earlier visit has seen the place.");
   app.add_option("RUN", *folders, "folders that `samewhere run` wrote, of sources with truth")
       ->required();
   app.add_option("--csv", *csv_file, "write the table to this file, too");

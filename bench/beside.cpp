@@ -1,4 +1,4 @@
-// beside: does tracking feel that loops are closed beside it?
+// beside: does loop closing in parallel slow tracking?
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -103,11 +103,10 @@ std::function<void()> set_up(CLI::App& app) {
   const auto settings = std::make_shared<Settings>();
   app.name("beside");
   app.description(
-      "Tracks a walk with loops closed beside it (the judge and, once a loop is believed, "
-      "correction and the full bundle) and without, in turn, at the pace of the camera and as "
-      "fast as it can: how long does a frame's tracking take? Pictures are read before; nothing "
-      "else should run.");
-  app.add_option("sources", settings->sources, "folders, or walks as twin:mirror?seed=1000")
+      "Time of tracking per frame with parallel loop closing (loop verifier; correction and full "
+      "bundle adjustment once a loop is accepted) and without, in turn, at the frame rate of the "
+      "camera and as fast as possible. Images are read before; no other program should run.");
+  app.add_option("sources", settings->sources, "recordings, or sequences as twin:mirror?seed=1000")
       ->required();
   app.add_option("--passes", settings->num_passes, "of each")->check(CLI::Range(1, 100));
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");

@@ -1,5 +1,4 @@
-// closing: how long from the decision that a loop is one to the corrected map, in maps of several
-// sizes?
+// closing: time from loop decision to corrected map, in maps of several sizes
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -17,8 +16,8 @@
 namespace samewhere::bench {
 namespace {
 
-// A walk along the streets of a town, a keyframe a metre: its first keyframes with the odometry and
-// the loops between them, all closed already.
+// The first keyframes of a path along the streets of a town, one per metre, with odometry and all
+// loops between them.
 scene::MapVersion map_of(const GraphWorld& world, std::size_t num_keyframes) {
   scene::MapVersion map;
   for (std::size_t i = 0; i < num_keyframes; ++i) {
@@ -41,15 +40,15 @@ scene::MapVersion map_of(const GraphWorld& world, std::size_t num_keyframes) {
   return apply(map, correct::solve_poses(map, {}));
 }
 
-// Wrong: refused before, as after most long walks, or new.
-scene::LoopEdge lie(const GraphWorld& world, const scene::MapVersion& map) {
+// A false loop closure: a new one, or a suspended one that is re-tested.
+scene::LoopEdge false_loop(const GraphWorld& world, const scene::MapVersion& map) {
   const std::size_t middle = map.keyframes.size() / 2;
   return {core::KeyframeId(middle), core::KeyframeId(middle / 2), core::Rigid3{},
           world.graph.edges.front().information, core::CandidateId(map.loops.size() + 1)};
 }
 
-// The walk comes home.
-scene::LoopEdge home_coming(const GraphWorld& world, const scene::MapVersion& map) {
+// From the last keyframe to the first.
+scene::LoopEdge true_loop(const GraphWorld& world, const scene::MapVersion& map) {
   const std::size_t last = map.keyframes.size() - 1;
   return {core::KeyframeId(last), core::KeyframeId(0),
           inverse(world.world_from_node[0]) * world.world_from_node[last],
@@ -62,17 +61,17 @@ double closing_ms(const scene::MapVersion& map, const scene::LoopEdge& loop, boo
   const scene::MapVersion corrected = apply(map, closing.edit);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   core::require(corrected.loops.size() == map.loops.size() + (is_true ? 1 : 0),
-                "a true loop is believed, and no other");
+                "only a true loop is accepted");
   return spent.count();
 }
 
-// A loop that was believed is taken back: all of the graph is solved without it, from two starts.
+// Withdraws an accepted loop: the whole graph is solved without it, from two initializations.
 double withdrawing_ms(const scene::MapVersion& map) {
   const auto start = std::chrono::steady_clock::now();
   const scene::Edit edit = correct::withdraw_loop(map, map.loops[map.loops.size() / 2].cause, {});
   const scene::MapVersion without = apply(map, edit);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-  core::require(without.loops.size() + 1 == map.loops.size(), "one loop is gone");
+  core::require(without.loops.size() + 1 == map.loops.size(), "one loop is withdrawn");
   return spent.count();
 }
 
@@ -96,19 +95,19 @@ std::vector<std::string> row_of(const scene::MapVersion& map, const std::string&
 }
 
 void measure(const Settings& settings) {
-  Table table{{"keyframes", "loops before", "in doubt", "new loop", "ms median", "ms worst"}, {}};
+  Table table{{"keyframes", "loops before", "suspended", "new loop", "ms median", "ms worst"}, {}};
   const GraphWorld world = make_graph(GraphKind::kGrid, {}, settings.seed);
   for (const int num_keyframes : settings.num_keyframes) {
     scene::MapVersion map = map_of(world, static_cast<std::size_t>(num_keyframes));
     const auto add = [&](const std::string& what, const std::function<double()>& measure_ms) {
       table.rows.push_back(row_of(map, what, measure_ms, settings.num_runs));
     };
-    const auto close_home = [&] { return closing_ms(map, home_coming(world, map), true); };
-    add("true", close_home);
-    add("a lie", [&] { return closing_ms(map, lie(world, map), false); });
-    add("one taken back", [&] { return withdrawing_ms(map); });
-    map.suspended_loops.push_back(lie(world, map));
-    add("true", close_home);
+    const auto close_true_loop = [&] { return closing_ms(map, true_loop(world, map), true); };
+    add("true", close_true_loop);
+    add("false", [&] { return closing_ms(map, false_loop(world, map), false); });
+    add("withdrawal", [&] { return withdrawing_ms(map); });
+    map.suspended_loops.push_back(false_loop(world, map));
+    add("true", close_true_loop);
   }
   publish(table, settings.csv_file);
 }
@@ -116,11 +115,11 @@ void measure(const Settings& settings) {
 std::function<void()> set_up(CLI::App& app) {
   const auto settings = std::make_shared<Settings>();
   app.name("closing");
-  app.description("Time from the decision that a loop is one to the corrected map.");
+  app.description("Time from loop decision to corrected map.");
   app.add_option("--keyframes", settings->num_keyframes, "sizes of the map")
       ->check(CLI::Range(2, 3500));
   app.add_option("--runs", settings->num_runs, "of each size")->check(CLI::Range(1, 1000));
-  app.add_option("--seed", settings->seed, "of the walk");
+  app.add_option("--seed", settings->seed, "of the path");
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

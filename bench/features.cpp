@@ -1,4 +1,4 @@
-// features SOURCE...: how fast are features found, and how many of them again in a changed picture?
+// features SOURCE...: time and repeatability of feature detection under known warps
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -183,8 +183,8 @@ void measure(Options& options) {
   const std::vector<Extractor> extractors = {
       {"cv::ORB", [&](const cv::Mat& grey) { return extract_plain(grey, config.num_features); }},
       {"ours", [&](const cv::Mat& grey) { return extract_ours(grey, config); }}};
-  Table table{{"source", "extractor", "change", "CPU ms", "features", "evenness", "found again",
-               "matched right", "right of matches", "error px"},
+  Table table{{"source", "extractor", "change", "CPU ms", "features", "evenness", "repeated",
+               "matched correctly", "correct of matches", "error px"},
               {}};
   for (const auto& source : options.sources) add_rows(source, extractors, options, table);
   publish(table, options.csv_file);

@@ -193,7 +193,7 @@ GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t see
     graph.world_from_node.push_back(graph.world_from_node.back() * graph.edges.back().a_from_b);
   }
   for (const auto& [a, b] : loops) add(a, b, true);
-  world.is_lie.assign(graph.edges.size(), false);
+  world.is_outlier.assign(graph.edges.size(), false);
   return world;
 }
 
@@ -204,7 +204,7 @@ GraphWorld with_exact_edges(GraphWorld world) {
   return world;
 }
 
-void lie_at_random(GraphWorld& world, double share, std::uint64_t seed) {
+void add_random_outliers(GraphWorld& world, double share, std::uint64_t seed) {
   core::Random random(seed);
   for (const std::size_t loop : loops_of(world)) {
     if (random.uniform(0.0, 1.0) >= share) continue;
@@ -212,11 +212,11 @@ void lie_at_random(GraphWorld& world, double share, std::uint64_t seed) {
     const int before = edge.a;
     while (edge.a == before || edge.a == edge.b)
       edge.a = static_cast<int>(random.uniform(0.0, edge.b));
-    world.is_lie[loop] = true;
+    world.is_outlier[loop] = true;
   }
 }
 
-void lie_together(GraphWorld& world, double share, std::uint64_t seed) {
+void add_consistent_outliers(GraphWorld& world, double share, std::uint64_t seed) {
   core::Random random(seed);
   const std::vector<std::size_t> loops = loops_of(world);
   const auto length = static_cast<std::size_t>(share * static_cast<double>(loops.size()));
@@ -229,7 +229,7 @@ void lie_together(GraphWorld& world, double share, std::uint64_t seed) {
     optimize::PoseEdge& edge = world.graph.edges[loops[i]];
     const Pose& a = world.world_from_node[static_cast<std::size_t>(edge.a)];
     edge.a_from_b = inverse(a) * shift * a * edge.a_from_b;
-    world.is_lie[loops[i]] = true;
+    world.is_outlier[loops[i]] = true;
   }
 }
 

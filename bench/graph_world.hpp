@@ -8,11 +8,11 @@
 
 namespace samewhere::bench {
 
-// A pose graph whose true poses are known. Its nodes stand where the odometry put them.
+// A pose graph with known true poses. Its nodes are initialized by composed odometry.
 struct GraphWorld {
   optimize::PoseGraph graph;
   std::vector<core::Rigid3> world_from_node;  // the truth
-  std::vector<bool> is_lie;                   // per edge
+  std::vector<bool> is_outlier;               // per edge
 };
 
 enum class GraphKind {
@@ -25,7 +25,8 @@ enum class GraphKind {
 
 std::string_view name_of(GraphKind kind);
 
-// Standard deviations of the noise of every edge; the edges' informations are honest.
+// Standard deviations of the noise of every edge; the information of each edge is consistent with
+// it.
 struct GraphNoise {
   double sigma_m = 0.05;
   double sigma_rad = 0.02;
@@ -33,15 +34,15 @@ struct GraphNoise {
 
 GraphWorld make_graph(GraphKind kind, const GraphNoise& noise, std::uint64_t seed);
 
-// The same from the same noisy start, but every edge tells the truth: the best cost is 0.
+// The same noisy initialization, but with true relative poses in all edges: the best cost is 0.
 GraphWorld with_exact_edges(GraphWorld world);
 
-// Replaces a share of the loop edges, each by one to a random other node.
-void lie_at_random(GraphWorld& world, double share, std::uint64_t seed);
+// Replaces a share of the loop edges, each by an edge to a random other node.
+void add_random_outliers(GraphWorld& world, double share, std::uint64_t seed);
 
-// All loops of one stretch of the path, a share of all loops, say that it lies elsewhere by the
-// same 3 m: they agree with each other and with the odometry between them.
-void lie_together(GraphWorld& world, double share, std::uint64_t seed);
+// Shifts consecutive loop edges, a share of all, by the same 3 m: they are consistent with each
+// other and with the odometry between them.
+void add_consistent_outliers(GraphWorld& world, double share, std::uint64_t seed);
 
 // RMSE of the nodes' positions after the best rigid alignment, m.
 double ate_m(const GraphWorld& world);

@@ -1,4 +1,4 @@
-// graphs: are pose graphs of the usual kinds solved, how far from the best, and in what time?
+// graphs: convergence, error and time of the pose graph solver on the usual kinds of graphs
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "graph_world.hpp"
+#include "other_graph_solver.hpp"
 #include "program.hpp"
-#include "rival_graph_solver.hpp"
 #include <samewhere/core/timing.hpp>
 
 namespace samewhere::bench {
@@ -17,7 +17,7 @@ namespace {
 
 using Solve = std::function<void(optimize::PoseGraph&)>;
 
-// Half of the squared errors of all edges: by one and the same formula, whoever solved it.
+// Half of the sum of squared errors of all edges: the same formula for every solver.
 double cost_of(const optimize::PoseGraph& graph) {
   double sum = 0.0;
   for (const auto& edge : graph.edges) sum += chi2_of(graph, edge);
@@ -51,8 +51,8 @@ void add_rows(const GraphWorld& world, const std::string& name, Table& table) {
   };
   table.rows.push_back(row(world, name, "least squares", by(optimize::LoopLoss::kLeastSquares)));
   table.rows.push_back(row(world, name, "gnc (default)", by(optimize::LoopLoss::kGnc)));
-  if (has_rival_graph_solver())
-    table.rows.push_back(row(world, name, "mrpt, least squares", solve_by_rival));
+  if (has_other_graph_solver())
+    table.rows.push_back(row(world, name, "mrpt, least squares", solve_with_other));
 }
 
 void measure(const std::string& csv_file) {
@@ -64,7 +64,7 @@ void measure(const std::string& csv_file) {
     const std::string name(name_of(kind));
     const GraphWorld world = make_graph(kind, {}, 1000);
     add_rows(world, name, table);
-    // odometry alone is noisy: the start is as bad, and the best cost is that of odometry's noise
+    // initialized by noisy odometry alone; the best cost is that of the noise
     add_rows(make_graph(kind, {.sigma_m = 0.01, .sigma_rad = 0.005}, 1000), name + ", little noise",
              table);
     add_rows(with_exact_edges(world), name + ", exact edges", table);
@@ -75,7 +75,7 @@ void measure(const std::string& csv_file) {
 std::function<void()> set_up(CLI::App& app) {
   const auto csv_file = std::make_shared<std::string>();
   app.name("graphs");
-  app.description("Time and cost of pose graphs of made-up walks, on one core.");
+  app.description("Time and cost of solving synthetic pose graphs, on one core.");
   app.add_option("--csv", *csv_file, "write the table to this file, too");
   return [csv_file] { measure(*csv_file); };
 }

@@ -13,7 +13,7 @@ namespace samewhere::bench {
 namespace {
 
 constexpr double kMaxError_px = 3.0;
-constexpr double kMargin_px = 20.0;  // nobody finds features nearer to the edge
+constexpr double kMargin_px = 20.0;  // no extractor detects features nearer to the edge
 constexpr double kNoise_levels = 2.0;
 
 // Turned about the centre and scaled, and its far edge drawn together by `tilt`.

@@ -30,7 +30,7 @@ struct PointTable {
   cv::Mat descriptors;
 };
 
-// How well the features of a picture are found again in its warped copy.
+// Repeatability of the features of a picture in its warped copy.
 struct Repeat {
   int num_visible = 0;  // features of the first picture that lie inside the second
   int num_again = 0;    // of these, with a feature of the second within 3 pixels

@@ -1,5 +1,6 @@
 # What can get worse in rows of bench/rows: for each file the lines `ROW, FIELD, KIND, VALUE`, separated by tabs.
-# KIND is ate (m), recall (share) or false (a count). Names of fields are the same before and after a change of wording.
+# KIND is ate (m), recall (share) or false (a count). Names of fields are the same before and after a change of wording:
+# older words are read, too.
 function put(field, kind, value,   key) {
   key = row ":" field
   if (++times[key] > 1) field = field " #" times[key]
@@ -29,21 +30,34 @@ function figure(name, value) {
   else if (name == "revisits closed" && share(value) != "") put(name, "recall", share(value))
 }
 
+# today(WORDS): of a header or a cell, in the words of today.
+function today(words) {
+  sub(/^lies believed$/, "false loops accepted", words)
+  sub(/the lies$/, "false loops", words)
+  sub(/believed$/, "accepted", words)
+  sub(/never lied to$/, "without it", words)
+  sub(/^starts$/, "trials", words)
+  sub(/^right$/, "correct", words)
+  sub(/^back in the map$/, "the place", words)
+  sub(/^in a look-alike of half the map$/, "only its look-alike", words)
+  return words
+}
+
 # kind_of(NAME): of a column of a table, or nothing.
 function kind_of(name) {
-  if (name ~ /believed$/ && name ~ /^ATE/) return ""  # while the map is known to be bent
+  if (name ~ /accepted$/ && name ~ /^ATE/) return ""  # while the map has a false loop closure
   if (name ~ /^ATE m/) return "ate"
   if (name == "R@100P") return "recall"
-  if (name ~ /^(wrong|false) of all answers$/ || name ~ /^(lies believed|false (loops )?accepted)$/) return "false"
-  if (has_starts && name ~ /^(right|correct)$/) return "recall"
-  if (has_starts && name ~ /^(wrong|false)$/) return "false"
+  if (name ~ /^(wrong|false) of all answers$/ || name ~ /^false (loops )?accepted$/) return "false"
+  if (has_trials && name == "correct") return "recall"
+  if (has_trials && name ~ /^(wrong|false)$/) return "false"
   return ""
 }
 
 function heading(   i, kind) {
-  num_columns = num_kinds = has_starts = 0
+  num_columns = num_kinds = has_trials = 0
   first_kind = 0
-  for (i = 1; i <= n; ++i) if (cells[i] ~ /^(starts|trials)$/) has_starts = i
+  for (i = 1; i <= n; ++i) if (cells[i] == "trials") has_trials = i
   for (i = 1; i <= n; ++i) {
     kind = kind_of(cells[i])
     kinds[i] = kind
@@ -56,7 +70,7 @@ function heading(   i, kind) {
 
 # The cells before the first measured column, up to the first with a decimal point.
 function label(   i, end, text) {
-  end = has_starts && has_starts < first_kind ? has_starts : first_kind
+  end = has_trials && has_trials < first_kind ? has_trials : first_kind
   for (i = 1; i < end && cells[i] !~ /^-?[0-9]+\.[0-9]/; ++i) text = text (i > 1 ? ", " : "") cells[i]
   return text
 }
@@ -65,7 +79,7 @@ function data(   i, value) {
   for (i = 1; i <= n; ++i) {
     if (kinds[i] == "" || cells[i] !~ /^[0-9]/) continue
     value = first_number(cells[i])
-    if (has_starts && kinds[i] == "recall") value = cells[has_starts] + 0 ? sprintf("%.4f", value / cells[has_starts]) : ""
+    if (has_trials && kinds[i] == "recall") value = cells[has_trials] + 0 ? sprintf("%.4f", value / cells[has_trials]) : ""
     put(label() ": " names[i], kinds[i], value)
   }
 }
@@ -77,6 +91,7 @@ FNR == 1 { row = FILENAME; sub(/\.txt$/, "", row); num_kinds = num_columns = 0 }
   sub(/^ +/, "", line)
   sub(/ +$/, "", line)
   n = split(line, cells, /  +/)
+  if (n > 2) for (i = 1; i <= n; ++i) cells[i] = today(cells[i])
   if (n == 2) figure(cells[1], cells[2])
   if (n == num_columns && num_kinds && $0 !~ /^ /) data()
   else if (n > 2 && $0 !~ /^ / && cells[n] !~ /^[0-9]/) heading()

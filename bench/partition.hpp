@@ -7,18 +7,18 @@
 
 namespace samewhere::bench {
 
-// What became of the classes of landmarks that are one.
+// Change of the partition of landmarks into classes; a class holds those that were merged.
 struct PartitionChange {
-  // Classes of before beyond one in each class of today, and the other way round: 0 and 0 where
-  // both partitions are the same.
+  // Earlier classes beyond one in each later class, and later ones beyond one in each earlier
+  // class: 0 and 0 if both partitions are the same.
   int num_joined = 0;
   int num_parted = 0;
-  // Each class of today that was several: who stood for those before.
+  // Each later class that joins several: the landmarks that represented those before.
   std::vector<std::vector<core::LandmarkId>> joined;
 };
 
-// Of the landmarks of `before`, by what stands for them there and in `after`, which grew out of
-// it. `ignored`: merges of `after` that loops of these causes brought do not count.
+// Of the landmarks of `before`; `after` is a later version of the same map (else ContractError).
+// `ignored`: merges of `after` with these causes do not count.
 PartitionChange partition_change(const scene::MapVersion& before, const scene::MapVersion& after,
                                  const std::set<core::CandidateId>& ignored = {});
 

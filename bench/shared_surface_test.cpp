@@ -11,7 +11,7 @@ namespace {
 constexpr double kWall_m = 2.0;
 const core::Camera kCamera = twin::kTwinCamera;
 
-// Of a wall, looked at from in front of it, as deep everywhere.
+// Of a wall, perpendicular to the optical axis: constant depth.
 SurfaceView before_the_wall(int frame, double aside_m, double depth_m = kWall_m) {
   const auto& camera = std::get<core::PinholeRadtan>(kCamera);
   SurfaceView view = surface_view(
@@ -20,7 +20,7 @@ SurfaceView before_the_wall(int frame, double aside_m, double depth_m = kWall_m)
   return view;
 }
 
-// Of a sphere, from its centre: whoever turns there sees as deep everywhere.
+// Of a sphere, from its centre: constant range for every rotation.
 SurfaceView in_the_sphere(int frame, double turned_rad) {
   const auto& camera = std::get<core::PinholeRadtan>(kCamera);
   cv::Mat depth_m(camera.height_px, camera.width_px, CV_32F);
@@ -43,7 +43,7 @@ SharedSurface shared(const SurfaceView& a, const SurfaceView& b) {
   return shared_surface(a, b, kCamera, &SurfaceView::fine);
 }
 
-TEST(SharedSurface, AStepAsideSharesWhatIsLeftOfTheWall) {
+TEST(SharedSurface, ATranslationAsideSharesTheRestOfTheWall) {
   EXPECT_NEAR(shared(before_the_wall(0, 0.0), before_the_wall(1, 0.0)).share, 1.0, 0.01);
   EXPECT_NEAR(shared(before_the_wall(0, 0.0), before_the_wall(1, 0.4 * width_m())).share, 0.6,
               0.02);
@@ -55,14 +55,14 @@ TEST(SharedSurface, WhatIsNearerIsAnotherSurface) {
   EXPECT_GT(shared(before_the_wall(0, 0.0), before_the_wall(1, 0.0, 1.9)).share, 0.9);
 }
 
-TEST(SharedSurface, AtTheBarOfTheTruthItMayBeEither) {
+TEST(SharedSurface, AtTheLimitOfTheTruthTheProbabilityIsBetween0And1) {
   const SurfaceView query = before_the_wall(0, 0.0);
   EXPECT_GT(shared(query, before_the_wall(1, 0.3 * width_m())).likeliness, 0.99);
   EXPECT_NEAR(shared(query, before_the_wall(1, 0.7 * width_m())).likeliness, 0.25, 0.1);
   EXPECT_LT(shared(query, before_the_wall(1, 0.9 * width_m())).likeliness, 0.01);
 }
 
-TEST(SharedSurface, WhoLooksAnotherWayIsElsewhereWhateverIsShared) {
+TEST(SharedSurface, ADifferentViewingDirectionIsADifferentPlaceDespiteSharedSurface) {
   const SurfaceView query = in_the_sphere(0, 0.0);
   const SharedSurface little = shared(query, in_the_sphere(1, 0.35));
   const SharedSurface too_much = shared(query, in_the_sphere(1, 0.9));
@@ -72,7 +72,7 @@ TEST(SharedSurface, WhoLooksAnotherWayIsElsewhereWhateverIsShared) {
   EXPECT_EQ(shared(query, in_the_sphere(1, 1.6)).share, 0.0);
 }
 
-TEST(SharedSurface, AHandfulOfPointsSharesNothing) {
+TEST(SharedSurface, TooFewPointsShareNothing) {
   cv::Mat depth_m = cv::Mat::zeros(480, 640, CV_32F);
   depth_m(cv::Rect(320, 240, 20, 20)) = static_cast<float>(kWall_m);
   const SurfaceView view = surface_view(0, depth_m, kCamera);
@@ -80,7 +80,7 @@ TEST(SharedSurface, AHandfulOfPointsSharesNothing) {
   EXPECT_EQ(shared(view, view).share, 0.0);
 }
 
-TEST(PlacesBySurface, TheLikeliestBeforeTheWindowAnswers) {
+TEST(PlacesBySurface, TheMostProbableViewBeforeTheWindowIsTheMatch) {
   std::vector<SurfaceView> views;
   for (int i = 0; i < 6; ++i) views.push_back(before_the_wall(i, 0.35 * width_m() * i));
   views.push_back(before_the_wall(6, 0.4 * width_m()));

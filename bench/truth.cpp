@@ -1,6 +1,6 @@
-// truth SPEC...: is what the twin building says about itself true? Checks that do not go the way
-// that the truth was made: pixels carried from one frame to another by depth and pose and found
-// there again, inertial samples integrated, loops and impostors seen again by single rays.
+// truth SPEC...: is the ground truth of a twin building correct? Independent checks: reprojection
+// by depth and pose, integration of inertial samples, visibility of loops and aliased pairs by
+// single rays.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -61,7 +61,8 @@ struct Shot {
   DepthView view;
 };
 
-// How far from where depth and pose carry them pixels are found again in the other picture.
+// Distance between the reprojection of pixels by depth and pose and their match in the other
+// picture.
 std::vector<double> picture_shifts_px(const core::Camera& camera, const Shot& from,
                                       const Shot& to) {
   constexpr int kStep_px = 24;
@@ -254,19 +255,21 @@ std::function<void()> set_up(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.name("truth");
   app.description(
-      "Is what the twin building says about itself true? Pixels carried to the frame a second "
-      "later\n"
-      "by depth and pose: share whose depth there is as foretold (to 1 %; the others are hidden, "
-      "or\n"
-      "something is wrong), and the median residual of all; carried to the next frame: from where\n"
-      "the picture is found again (px, median); inertial samples integrated over 1 s; loops and\n"
-      "impostors seen again by single rays.");
+      "Is the ground truth of a twin building correct? Reprojection to the frame a second later "
+      "by\n"
+      "depth and pose: share with the predicted depth (to 1 %; the others are hidden, or an "
+      "error),\n"
+      "and the median residual of all; reprojection to the next frame: distance to the match in "
+      "the\n"
+      "picture (px, median); inertial samples integrated over 1 s; loops and aliased pairs "
+      "checked\n"
+      "by single rays.");
   app.add_option("SPEC", options->specs, "twin:PRESET?seed=1000")->required();
   app.add_option("--csv", options->csv_file, "write the table to this file, too");
   return [options] {
     Table table{
-        {"walk", "frames", "depth as foretold, residual", "px by picture", "patches", "chi2 / dof",
-         "within 3 sigma", "loops", "confirmable", "seen again", "impostors", "nothing shared"},
+        {"walk", "frames", "depth as predicted, residual", "px by picture", "patches", "chi2 / dof",
+         "within 3 sigma", "loops", "confirmable", "confirmed", "aliased pairs", "nothing shared"},
         {}};
     for (const auto& spec : options->specs) table.rows.push_back(check(spec));
     publish(table, options->csv_file);

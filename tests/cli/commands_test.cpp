@@ -37,7 +37,7 @@ class Commands : public testing::Test {
   input::TestFolder folder_;
 };
 
-TEST_F(Commands, TrainWordsGrowsWhatLoopsCanUse) {
+TEST_F(Commands, TrainWordsWritesAVocabularyThatLoopsReads) {
   const std::string walk = "'twin:office-loop?seed=2' --set twin.num_frames=6";
   const Outcome grown = run(fmt::format("train words {} --step 2 --branching 4 --depth 3 --out {}",
                                         walk, quoted(path("mine.bin"))));

@@ -1,4 +1,4 @@
-// A run in the map of an earlier one: what it tells, what is refused, and that nothing is lost.
+// A run in the map of an earlier run: output, errors, and that no result is lost.
 
 #include <algorithm>
 
@@ -37,7 +37,7 @@ class KnownMap : public testing::Test {
   input::TestFolder folder_;
 };
 
-TEST_F(KnownMap, WhatItRecognisedIsToldAndShown) {
+TEST_F(KnownMap, RelocalizationIsReportedAndShown) {
   const Outcome found =
       run(fmt::format("run {} --map {} --localize --out {}", kWalk, in("a/map.sw"), in("b")));
   ASSERT_EQ(found.exit_code, 0) << found.err;

@@ -1,4 +1,4 @@
-// `samewhere ledger` on what a run wrote, and on what none did.
+// `samewhere ledger` on a run folder, and on folders that are none.
 
 #include <algorithm>
 
@@ -47,7 +47,7 @@ TEST_F(LedgerCommand, ListsRejectedCandidatesWithReasons) {
   EXPECT_EQ(refused.out.find("812"), std::string::npos);
 }
 
-TEST_F(LedgerCommand, ShowsAllThatWasMeasuredOfOne) {
+TEST_F(LedgerCommand, ShowsAllMeasurementsOfACandidate) {
   const Outcome shown = run("show 1");
   EXPECT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("9.8 m"));
@@ -78,7 +78,7 @@ TEST_F(LedgerCommand, APictureNeedsAMap) {
   EXPECT_FALSE(std::filesystem::exists(folder_.root() / "why.svg"));
 }
 
-TEST_F(LedgerCommand, AnotherWordOnALoopNeedsAMap) {
+TEST_F(LedgerCommand, OverridingADecisionNeedsAMap) {
   for (const char* word : {"reject 0", "force 1"}) {
     const Outcome without_map = run(word);
     EXPECT_EQ(without_map.exit_code, 2);
@@ -89,10 +89,10 @@ TEST_F(LedgerCommand, AnotherWordOnALoopNeedsAMap) {
               HasSubstr("optimize, map or verify"));
 }
 
-TEST(LedgerOfARun, TakesALoopBackAndClosesItAgain) {
+TEST(LedgerOfARun, WithdrawsALoopAndClosesItAgain) {
   input::TestFolder folder;
   const std::string out = quoted(folder.root() / "run");
-  // with a window so short, and no two views held to be connected, neighbours close loops
+  // with so short a window, and no covisible keyframes excluded, neighbours close loops
   const Outcome walked = run_program(
       "run 'twin:office-loop?seed=2' --set twin.num_frames=11 --set retrieve.window_frames=4 "
       "--set map.min_shared=1000 --set map.min_tracked_ratio=0.95 --out " +

@@ -1,4 +1,4 @@
-// The map file of a run: there after kill -9, told when it cannot be written, exported as it is.
+// The map file of a run: complete after kill -9, an error if it cannot be written, exports.
 
 #include <csignal>
 #include <thread>
@@ -34,7 +34,7 @@ class MapOfARun : public testing::Test {
     _exit(127);
   }
 
-  // How many keyframes the file holds by now; 0 while there is none.
+  // Number of keyframes in the file; 0 if there is no file yet.
   static std::size_t num_keyframes(const std::filesystem::path& map) {
     try {
       return scene::MapFile::open(map).load().map.keyframes.size();

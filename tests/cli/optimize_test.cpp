@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* kInformation = "400 0 0 400 0 2500";
 
-// Twice around a square of four poses, with the loops that show it and one that lies.
+// Twice around a square of four poses, with true loop closures and one outlier edge.
 std::string square() {
   std::string text;
   for (int i = 0; i < 8; ++i)
@@ -37,7 +37,7 @@ class Optimize : public testing::Test {
   input::TestFolder folder_;
 };
 
-TEST_F(Optimize, RefusesTheLieAndSaysSo) {
+TEST_F(Optimize, RejectsTheOutlierEdgeAndReportsIt) {
   folder_.write("graph.g2o", square() + "VERTEX_XY 9 0 0\n");
   const Outcome done =
       run("optimize " + quoted(path("graph.g2o")) + " --out " + quoted(path("out.g2o")) +
@@ -53,13 +53,13 @@ TEST_F(Optimize, RefusesTheLieAndSaysSo) {
   EXPECT_THAT(loops, HasSubstr("a,b,squared_error,weight\n0,4,"));
   EXPECT_EQ(loops.substr(loops.size() - 3), ",0\n") << "the last one is the outlier";
   EXPECT_THAT(core::read_file(path("graph.svg")), HasSubstr("rejected loops (1)"));
-  // what was solved is at its best already
+  // the solved graph is at its optimum already
   const Outcome again = run("optimize " + quoted(path("out.g2o")));
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("3 / 1"));
 }
 
-TEST_F(Optimize, PartsAreNamed) {
+TEST_F(Optimize, ComponentsAreReported) {
   std::string text = square();
   text += "VERTEX_SE2 20 5 5 0\nVERTEX_SE2 21 6 5 0\n";
   folder_.write("graph.g2o", text + fmt::format("EDGE_SE2 20 21 1 0 0 {}\n", kInformation));
@@ -68,7 +68,7 @@ TEST_F(Optimize, PartsAreNamed) {
   EXPECT_THAT(done.out, HasSubstr("2, each optimized separately"));
 }
 
-TEST_F(Optimize, WhatIsNoGraphIsRefusedAndNothingIsWritten) {
+TEST_F(Optimize, AFileThatIsNoGraphIsAnErrorAndNothingIsWritten) {
   folder_.write("cut.g2o", square().substr(0, square().size() - 8));
   folder_.write("noise.g2o",
                 "\x7f"

@@ -1,5 +1,4 @@
-// Acceptance on the built-in world: a corridor whose doors look alike, walked once round and a bit
-// further.
+// Acceptance in the twin building: one and a bit laps through a corridor of look-alike doors.
 
 #include <algorithm>
 
@@ -13,8 +12,8 @@
 namespace samewhere {
 namespace {
 
-// One test, because one walk answers all these questions and takes a minute or two.
-TEST(Corridor, ALookalikeDoorIsNeverMistakenForAnotherAndTheTrueReturnTakesTheDriftOut) {
+// One test, because the run takes a minute or two.
+TEST(Corridor, LookAlikeDoorsGiveNoFalseLoopAndTheTrueLoopCorrectsTheDrift) {
   cv::setNumThreads(1);
   pipeline::Config config;
   config.source = "twin:office-loop?seed=1";

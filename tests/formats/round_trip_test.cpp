@@ -1,4 +1,4 @@
-// What is written as a folder of the field's formats comes back through our readers as it was.
+// Folders written in the TUM and EuRoC formats are read back unchanged.
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
@@ -103,13 +103,13 @@ twin::MakeTables tables_of(const twin::TestSource& source) {
   };
 }
 
-// By the format check, which knows nothing of our readers.
+// By the format check, which is independent of our readers.
 void expect_good_format(const std::filesystem::path& folder) {
   const std::string check = "'" SAMEWHERE_REPOSITORY "/scripts/check-dataset' " + quoted(folder);
   EXPECT_EQ(std::system(check.c_str()), 0) << folder;
 }
 
-TEST(RoundTrip, ATumFolderComesBackAsItWas) {
+TEST(RoundTrip, ATumFolderIsReadBackUnchanged) {
   const input::TestFolder folder;
   twin::TestSource written(kNumFrames, 1, 3);
   twin::write_tum_folder(written, folder.root() / "walk", tables_of(written));
@@ -130,7 +130,7 @@ TEST(RoundTrip, ATumFolderComesBackAsItWas) {
   EXPECT_FALSE(read->next());
 }
 
-TEST(RoundTrip, AEurocFolderComesBackAsItWas) {
+TEST(RoundTrip, AEurocFolderIsReadBackUnchanged) {
   for (const int num_cameras : {1, 2}) {
     const input::TestFolder folder;
     twin::TestSource written(kNumFrames, num_cameras, 4);

@@ -1,5 +1,5 @@
-// What the project promises on real recordings, with the shipped config. The bounds are goals, not
-// yesterday's figures.
+// Acceptance on real recordings with the shipped config. ATE and rotational error are at most 20 %
+// above the measured figures (bench/RESULTS.md); counts are exact or at most 20 % below.
 
 #include <cstdlib>
 
@@ -54,7 +54,7 @@ class Golden : public testing::Test {
   std::string data_;
 };
 
-// Its revisits are found in the map while tracking: that needs no loop.
+// Revisits are tracked in the same map, so no loop closure is needed.
 TEST_F(Golden, RedkitchenIsTrackedToTheEndInOneMap) {
   const auto run = slam("redkitchen");
   EXPECT_EQ(run.num_measured, 1000);
@@ -62,25 +62,24 @@ TEST_F(Golden, RedkitchenIsTrackedToTheEndInOneMap) {
   EXPECT_EQ(run.loops.num_false, 0);
 }
 
-TEST_F(Golden, HololensComesBackToWhereItWas) {
+TEST_F(Golden, HololensClosesItsLoop) {
   const auto run = slam("hololens");
   EXPECT_EQ(run.num_measured, 373);
-  EXPECT_LT(run.ate->rmse_m, 0.20);
-  EXPECT_GE(run.loops.num_true, 1);
+  EXPECT_LT(run.ate->rmse_m, 0.059);
+  EXPECT_EQ(run.loops.num_true, 1);
   EXPECT_EQ(run.loops.num_false, 0);
 }
 
-TEST_F(Golden, AlmostPureRotationIsTrackedToTheEnd) {
+TEST_F(Golden, NearPureRotationIsTrackedToTheEnd) {
   const auto run = slam("tum_fr1_rpy");
   EXPECT_EQ(run.num_measured, 200);
-  EXPECT_LT(run.ate->rmse_m, 0.04);
-  EXPECT_LT(run.rpe->rotation_median_deg, 3.0);
+  EXPECT_LT(run.ate->rmse_m, 0.032);
+  EXPECT_LT(run.rpe->rotation_median_deg, 2.64);
   EXPECT_EQ(run.loops.num_false, 0);
 }
 
-// Two laps through a corridor of near-identical doors, from pictures alone; the best peer closes 43
-// of the 44 loops.
-TEST_F(Golden, TheSecondLapThroughTheCorridorIsFoundFromPicturesAlone) {
+// Two laps through a corridor of near-identical doors, 44 true loops; the best peer closes 43.
+TEST_F(Golden, ImagesAloneCloseTheLoopsOfTheSecondLapThroughTheCorridor) {
   const pipeline::Config config =
       config_of("rtabmap_corridor", {"retrieve.window_frames=19"}, "recognition");
   auto source = run::open_source(config);
@@ -92,8 +91,8 @@ TEST_F(Golden, TheSecondLapThroughTheCorridorIsFoundFromPicturesAlone) {
   EXPECT_EQ(found.num_false, 0);
 }
 
-// Figures of the better published HOG row, docs/evaluation.md.
-TEST_F(Golden, HogIsNotBelowThePeersHog) {
+// Bounds: the better published HOG row of docs/evaluation.md.
+TEST_F(Golden, HogIsNotBelowPublishedHog) {
   const auto corridor = hog("rtabmap_corridor", 19);
   EXPECT_GE(corridor.auc, 0.510);
   EXPECT_GE(corridor.recall_at_full_precision, 0.205);

@@ -54,7 +54,7 @@ core::Frame rectified(const core::Frame& frame) {
   return result;
 }
 
-// Features by how far away they are.
+// Features by distance.
 struct Class {
   double max_depth_m = 0.0;
   int num_features = 0;

@@ -1,5 +1,4 @@
-// The parallel structure of recognition alone, small enough for the sanitizers: nothing is
-// rendered.
+// Parallel steps of recognition; nothing is rendered, so that the sanitizers take little time.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -19,7 +18,7 @@
 namespace samewhere::run {
 namespace {
 
-// Steps that hand on a frame's number and do nothing else.
+// Steps that only pass on the number of a frame.
 RecognitionSteps counting(std::vector<std::uint64_t>& verified) {
   return {.describe =
               [](const core::Frame& frame) {
@@ -47,7 +46,7 @@ NextFrame numbered(std::uint64_t num_frames) {
   };
 }
 
-TEST(RecognitionThreads, EveryFrameComesToEveryStepInOrder) {
+TEST(RecognitionThreads, EveryFramePassesEveryStepInOrder) {
   for (const auto run : {run_in_turn, run_in_threads}) {
     for (const std::uint64_t num_frames : {0, 1, 3, 1000}) {
       std::vector<std::uint64_t> verified;
@@ -58,7 +57,7 @@ TEST(RecognitionThreads, EveryFrameComesToEveryStepInOrder) {
   }
 }
 
-TEST(RecognitionThreads, WhatAnyStepThrowsComesOutAndNobodyWaitsForever) {
+TEST(RecognitionThreads, AnExceptionInAnyStepIsRethrownWithoutDeadlock) {
   for (const auto run : {run_in_turn, run_in_threads}) {
     std::vector<std::uint64_t> verified;
     const auto fail_at_7 = [](core::FrameId frame) {
@@ -87,7 +86,7 @@ TEST(RecognitionThreads, WhatAnyStepThrowsComesOutAndNobodyWaitsForever) {
   }
 }
 
-// A wall of squares, like no other.
+// An image of random squares; each number gives another one.
 cv::Mat wall(std::uint64_t number) {
   core::Random random(number);
   cv::Mat picture(120, 160, CV_8UC3, cv::Scalar::all(128));
@@ -99,7 +98,7 @@ cv::Mat wall(std::uint64_t number) {
   return picture;
 }
 
-// Three walls, and once more.
+// Three different images, twice.
 NextFrame two_laps() {
   return [next = std::uint64_t{0}]() mutable {
     std::optional<core::Frame> frame;
@@ -119,12 +118,12 @@ std::string found_by(const pipeline::Config& config, decltype(run_in_turn)* run)
   run(two_laps(), recognition.steps());
   RunOutcome outcome;
   std::move(recognition).report_to(outcome);
-  EXPECT_EQ(outcome.matches.size(), 3U) << "each wall is seen again";
+  EXPECT_EQ(outcome.matches.size(), 3U) << "each wall is matched in the second lap";
   EXPECT_EQ(outcome.record.thumbnails.size(), 6U);
   return report::pairs_text(outcome.matches) + report::loops_json(outcome.record.ledger);
 }
 
-TEST(RecognitionThreads, FindOnRealPicturesWhatOneThreadFinds) {
+TEST(RecognitionThreads, ResultsOnRealImagesEqualThoseOfOneThread) {
   for (const char* name : {"default", "paper"}) {
     pipeline::Config config = pipeline::profile(name);
     config.retrieve.window_frames = 2;

@@ -1,5 +1,5 @@
-// SLAM on three threads finds to the bit what it finds in turn, and ends well. Small enough for the
-// sanitizers: nothing is rendered, a camera goes along a painted wall and back.
+// SLAM on three threads gives the same bytes as on one, and ends without a deadlock. A camera moves
+// along a painted wall and back; nothing is rendered, so that the sanitizers take little time.
 #include <algorithm>
 #include <chrono>
 #include <deque>
@@ -29,12 +29,12 @@ constexpr int kWidth_px = 240;
 constexpr int kHeight_px = 180;
 constexpr int kStep_px = 12;
 constexpr std::uint64_t kNumFrames = 32;
-// In the second of them nobody knows any more where the camera was: the whole map is searched.
+// In the second of them tracking is lost and has no predicted pose: the whole map is searched.
 constexpr std::uint64_t kFirstBlackFrame = 21;
 constexpr std::uint64_t kLastBlackFrame = 22;
 
-// Small pictures, and a window so short that loops close, even between views that the map holds
-// together anyway.
+// Small images, and a retrieval window so short that loops are closed, even between covisible
+// keyframes.
 Config config_of(bool in_threads) {
   cv::setNumThreads(1);
   Config config;
@@ -73,7 +73,7 @@ cv::Mat painted_wall() {
   return wall;
 }
 
-// Along the wall, 2 m away from it, and back; for two frames somebody covers the lens.
+// Along the wall, 2 m away from it, and back; two frames are black.
 std::vector<core::Frame> walk() {
   const cv::Mat wall = painted_wall();
   const auto shared_rig = rig();
@@ -90,8 +90,8 @@ std::vector<core::Frame> walk() {
   return frames;
 }
 
-// The same way past two walls, the lower one nearer, for a camera without depth: one wall alone
-// would have two explanations.
+// The same path along two walls, the lower one nearer, for a camera without depth: the homography
+// of one plane alone is ambiguous.
 std::vector<core::Frame> walk_without_depth() {
   const cv::Mat wall = painted_wall();
   const cv::Rect lower(0, kHeight_px / 2, kWidth_px, kHeight_px / 2);
@@ -108,7 +108,7 @@ std::vector<core::Frame> walk_without_depth() {
   return frames;
 }
 
-// All that a run found, as the bytes that are written.
+// All results of a run, as the bytes that are written.
 struct Found {
   std::string trajectory;
   std::string loops;
@@ -153,7 +153,7 @@ void expect_same(const Found& found, const Found& expected, const std::string& h
   EXPECT_TRUE(found.map == expected.map) << how << ": the map files differ";
 }
 
-// Sleeps for up to 30 ms, each message as long as the seed wants it.
+// Sleeps for up to 30 ms at each message; the seed determines how long.
 core::StageHook asleep(std::uint64_t seed) {
   return [seed](std::uint64_t number) {
     core::Random random(core::seed_of(seed, "dawdle", number));
@@ -161,7 +161,7 @@ core::StageHook asleep(std::uint64_t seed) {
   };
 }
 
-// Threads that do nothing but take the processors away.
+// Threads that only use processor time.
 class Load {
  public:
   explicit Load(int num_threads) {
@@ -184,12 +184,12 @@ class Load {
   std::deque<std::thread> threads_;
 };
 
-TEST(SlamThreads, FindToTheByteWhatOneThreadFindsHoweverLongTheyTake) {
+TEST(SlamThreads, ResultsEqualThoseOfOneThreadForAnyDelay) {
   const std::vector<core::Frame> frames = walk();
   const Found in_turn = found_by(frames, config_of(false));
-  EXPECT_GT(in_turn.num_loops, 0U) << "without a correction this shows little";
+  EXPECT_GT(in_turn.num_loops, 0U) << "a loop must be closed";
   EXPECT_GT(in_turn.num_keyframes, 5U);
-  EXPECT_GT(in_turn.num_searches, 0) << "nobody was lost";
+  EXPECT_GT(in_turn.num_searches, 0) << "tracking must be lost";
   expect_same(found_by(frames, config_of(false)), in_turn, "in turn, once more");
   expect_same(found_by(frames, config_of(true)), in_turn, "in threads");
   for (std::uint64_t seed = 0; seed < 2; ++seed) {
@@ -201,7 +201,7 @@ TEST(SlamThreads, FindToTheByteWhatOneThreadFindsHoweverLongTheyTake) {
   expect_same(found_by(frames, config_of(true), asleep(9)), in_turn, "under load and asleep");
 }
 
-TEST(SlamThreads, LagAndDelayChangeTheResultButNotWithTheThreads) {
+TEST(SlamThreads, LagAndDelayChangeTheResultIndependentlyOfThreads) {
   const std::vector<core::Frame> frames = walk();
   Config in_turn = config_of(false);
   in_turn.map.visible_after_frames = 5;
@@ -213,8 +213,8 @@ TEST(SlamThreads, LagAndDelayChangeTheResultButNotWithTheThreads) {
   expect_same(found_by(frames, in_threads, asleep(1)), expected, "asleep");
 }
 
-// A loop begins it, and as no other comes for a while, nothing makes it void before it counts.
-TEST(SlamThreads, ABundleOfTheWholeMapOnTheWayChangesNothingOfThat) {
+// A loop starts it; no other loop follows for a while, so that its result is applied.
+TEST(SlamThreads, FullBundleAdjustmentDuringTheRunIsIndependentOfThreads) {
   const std::vector<core::Frame> frames = walk();
   Config in_turn = config_of(false);
   in_turn.verify.pause_frames = 12;
@@ -225,21 +225,21 @@ TEST(SlamThreads, ABundleOfTheWholeMapOnTheWayChangesNothingOfThat) {
   Config in_threads = in_turn;
   in_threads.threads = true;
   const Found expected = found_by(frames, in_turn);
-  EXPECT_NE(expected.trajectory, found_by(frames, at_the_end).trajectory) << "none on the way";
+  EXPECT_NE(expected.trajectory, found_by(frames, at_the_end).trajectory) << "none during the run";
   expect_same(found_by(frames, in_threads), expected, "in threads");
   for (std::uint64_t seed = 0; seed < 2; ++seed)
     expect_same(found_by(frames, in_threads, asleep(seed)), expected, "asleep");
 }
 
-TEST(SlamThreads, WithoutDepthTheyFindToTheByteWhatOneThreadFinds) {
+TEST(SlamThreads, WithoutDepthResultsEqualThoseOfOneThread) {
   const std::vector<core::Frame> frames = walk_without_depth();
   const Found in_turn = found_by(frames, config_of(false), {}, DepthFrom::kMotion);
-  EXPECT_GT(in_turn.num_keyframes, 3U) << "no map was started";
+  EXPECT_GT(in_turn.num_keyframes, 3U) << "the map was not initialized";
   expect_same(found_by(frames, config_of(true), {}, DepthFrom::kMotion), in_turn, "in threads");
   expect_same(found_by(frames, config_of(true), asleep(3), DepthFrom::kMotion), in_turn, "asleep");
 }
 
-// A later session in the map of the first half of the way, as trajectory and ledger.
+// A later session in the map of the first third of the path, as trajectory and ledger.
 std::string found_in_known_map(const scene::StoredMap& known, const Config& config,
                                const core::StageHook& hook = {}) {
   Slam slam(config, known, Slam::Use::kExtend, SlamTestHooks{.before_message = hook});
@@ -249,12 +249,13 @@ std::string found_in_known_map(const scene::StoredMap& known, const Config& conf
     slam.feed(frame);
   }
   slam.finish();
-  EXPECT_GT(slam.map().keyframes.size(), known.map.keyframes.size()) << "it was not relocalized";
+  EXPECT_GT(slam.map().keyframes.size(), known.map.keyframes.size())
+      << "the camera was not relocalized";
   return core::tum_text(trajectory_of(slam.map(), slam.frames())) +
          report::loops_json(slam.ledger());
 }
 
-TEST(SlamThreads, InAKnownMapTheyFindToTheByteWhatOneThreadFinds) {
+TEST(SlamThreads, InAKnownMapResultsEqualThoseOfOneThread) {
   const std::vector<core::Frame> frames = walk();
   Slam first(config_of(false));
   for (std::size_t i = 0; i < frames.size() / 3; ++i) first.feed(frames[i]);
@@ -272,7 +273,7 @@ void run_to_the_end(const std::vector<core::Frame>& frames, const SlamTestHooks&
   slam.finish();
 }
 
-TEST(SlamThreads, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
+TEST(SlamThreads, AnExceptionInAStageIsRethrownWithoutDeadlock) {
   const std::vector<core::Frame> frames = walk();
   for (const int num_kept : {0, 1, 4}) {
     int count = 0;
@@ -286,7 +287,8 @@ TEST(SlamThreads, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
       SlamTestHooks{.keep_map = [](const auto&, const auto&) { throw core::InputError("no room"); },
                     .before_message = {}});
   EXPECT_THROW(broken.feed(frames[0]), core::InputError);
-  EXPECT_THROW(broken.feed(frames[1]), core::ContractError) << "after an error nothing follows";
+  EXPECT_THROW(broken.feed(frames[1]), core::ContractError)
+      << "no frame is accepted after an error";
   // message by message, in mapping or in loop closing
   for (const std::uint64_t last : {0, 1, 2, 3, 8}) {
     const core::StageHook fail = [last](std::uint64_t number) {
@@ -296,7 +298,7 @@ TEST(SlamThreads, WhatAStageThrowsComesOutAndNobodyWaitsForever) {
   }
 }
 
-TEST(SlamThreads, DestructionInTheMiddleOfItsWorkEnds) {
+TEST(SlamThreads, DestructionDuringWorkEnds) {
   const std::vector<core::Frame> frames = walk();
   for (const std::size_t num_frames : {0, 1, 2, 7, 20}) {
     Slam slam(config_of(true), DepthFrom::kSensor,
@@ -305,7 +307,7 @@ TEST(SlamThreads, DestructionInTheMiddleOfItsWorkEnds) {
   }
 }
 
-TEST(SlamThreads, WhatStagesOwnIsLookedAtWhenTheyHaveEnded) {
+TEST(SlamThreads, MapAndLedgerAreAvailableAfterFinish) {
   Slam slam(config_of(true));
   EXPECT_THROW(slam.map(), core::ContractError);
   slam.finish();

@@ -1,4 +1,4 @@
-// How many threads the twin building starts, and what happens if the system refuses one.
+// Number of threads that the twin building starts, and the error if the system refuses one.
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -25,7 +25,7 @@ int most_threads = kPlenty;
 
 }  // namespace
 
-// Every request for a thread in this program goes by here.
+// Replaces the system function: every thread of this program is counted.
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
                               void* (*work)(void*), void* argument) {
   using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
@@ -44,7 +44,7 @@ using twin::Config;
 using twin::open_twin;
 using twin::Walkthrough;
 
-TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
+TEST(Threads, ARefusedThreadEndsTheOthersAndIsReported) {
   for (const int num_allowed : {0, 1, 3}) {
     num_started = 0;
     most_threads = num_allowed;
@@ -60,7 +60,7 @@ TEST(Threads, OneThatIsRefusedEndsTheOthersAndIsTold) {
   most_threads = kPlenty;
 }
 
-TEST(Threads, WorkIsSharedOutAmongAsManyAsAskedFor) {
+TEST(Threads, WorkIsSharedAmongTheGivenNumberOfThreads) {
   for (const int num_threads : {1, 2, 5}) {
     num_started = 0;
     std::vector<int> times(23, 0);
@@ -70,7 +70,7 @@ TEST(Threads, WorkIsSharedOutAmongAsManyAsAskedFor) {
   }
 }
 
-TEST(Threads, AnErrorInAnyShareComesOut) {
+TEST(Threads, AnErrorInAnyShareIsRethrown) {
   for (const int bad : {0, 1, 6}) {
     const auto work = [bad](int i) {
       if (i == bad) throw std::runtime_error("no light");
@@ -79,15 +79,15 @@ TEST(Threads, AnErrorInAnyShareComesOut) {
   }
 }
 
-TEST(Threads, OneWorkerMeansOneThreadForTheLightToo) {
+TEST(Threads, OneWorkerStartsOneThreadForIlluminationToo) {
   ASSERT_EQ(unsetenv("SAMEWHERE_CACHE"), 0);
   const auto source = open_twin("twin:office-loop?seed=3", {.num_frames = 1, .num_workers = 1});
   num_started = 0;
   ASSERT_TRUE(source->next());
-  EXPECT_EQ(num_started, 1) << "the one that renders: without a cache nobody looks into it";
+  EXPECT_EQ(num_started, 1) << "the rendering thread; without a cache there is no reader";
 }
 
-// All pictures of a walk, and how many threads that took.
+// All pictures of a sequence, and the number of threads that were started for them.
 struct Watched {
   std::vector<cv::Mat> pictures;
   int num_threads = 0;
@@ -111,19 +111,20 @@ bool is_same(const std::vector<cv::Mat>& a, const std::vector<cv::Mat>& b) {
   });
 }
 
-// Of a walk whose pictures are kept up to the first three: there is room for two readers, but for
-// none that would share the light.
-void expect_failure_is_kept(const std::shared_ptr<const Walkthrough>& walk, const Config& config) {
+// The first three pictures of the sequence are cached. Two threads may start: enough to read them,
+// too few to compute the illumination.
+void expect_failure_is_permanent(const std::shared_ptr<const Walkthrough>& walk,
+                                 const Config& config) {
   const auto source = open_twin(walk, config);
   num_started = 0;
   most_threads = 2;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(source->next()) << i;
   EXPECT_THROW(source->next(), core::InputError);
   most_threads = kPlenty;
-  EXPECT_THROW(source->next(), core::InputError) << "it must not begin again";
+  EXPECT_THROW(source->next(), core::InputError) << "it must not be tried again";
 }
 
-TEST(Threads, WhatIsKeptNeedsNoLightAndAPictureThatIsMissingIsRendered) {
+TEST(Threads, CachedPicturesNeedNoIlluminationAndAMissingOneIsRendered) {
   const auto cache =
       std::filesystem::path(testing::TempDir()) / ("samewhere_threads_" + std::to_string(getpid()));
   ASSERT_EQ(setenv("SAMEWHERE_CACHE", cache.c_str(), 1), 0);
@@ -132,18 +133,18 @@ TEST(Threads, WhatIsKeptNeedsNoLightAndAPictureThatIsMissingIsRendered) {
       std::make_shared<const Walkthrough>(twin::parse_spec("twin:office-loop?seed=3"), config);
   const Watched rendered = watched(walk, config);
   ASSERT_EQ(rendered.pictures.size(), 5U);
-  EXPECT_GT(rendered.num_threads, 2) << "those that share the light, then two that render";
+  EXPECT_GT(rendered.num_threads, 2) << "those of the illumination, then two that render";
   const Watched kept = watched(walk, config);
   EXPECT_TRUE(is_same(kept.pictures, rendered.pictures));
-  EXPECT_EQ(kept.num_threads, 2) << "nothing but readers of the cache";
+  EXPECT_EQ(kept.num_threads, 2) << "only readers of the cache";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(cache)) {
     if (entry.path().filename() == "000003.pictures") std::filesystem::remove(entry.path());
   }
-  expect_failure_is_kept(walk, config);
+  expect_failure_is_permanent(walk, config);
   const Watched mended = watched(walk, config);
   EXPECT_TRUE(is_same(mended.pictures, rendered.pictures));
   EXPECT_GT(mended.num_threads, 4);
-  EXPECT_EQ(watched(walk, config).num_threads, 2) << "it is kept again";
+  EXPECT_EQ(watched(walk, config).num_threads, 2) << "it is cached again";
   std::filesystem::remove_all(cache);
 }
 

@@ -1,4 +1,4 @@
-#include "rival_graph_solver.hpp"
+#include "other_graph_solver.hpp"
 
 #include <samewhere/core/errors.hpp>
 
@@ -14,7 +14,7 @@ namespace samewhere::bench {
 #ifdef SAMEWHERE_BENCH_MRPT
 namespace {
 
-mrpt::poses::CPose3D as_rivals(const core::Rigid3& pose) {
+mrpt::poses::CPose3D as_mrpt(const core::Rigid3& pose) {
   const auto& t = pose.translation;
   const auto& q = pose.rotation;
   return mrpt::poses::CPose3D(mrpt::math::CQuaternionDouble(q.w(), q.x(), q.y(), q.z()), t.x(),
@@ -27,8 +27,8 @@ core::Rigid3 as_ours(const mrpt::poses::CPose3D& pose) {
   return {Eigen::Quaterniond(q.r(), q.x(), q.y(), q.z()), {found.x(), found.y(), found.z()}};
 }
 
-// As far as it gets: ten times its own iterations, and steps a million times smaller than those at
-// which it stops by itself.
+// Until convergence: ten times its default iterations, and a step limit a million times smaller
+// than its default.
 constexpr std::size_t kMaxIterations = 1000;
 constexpr double kSmallestStep = 1e-12;
 
@@ -45,9 +45,9 @@ void solve(Network& network) {
 void solve_in_space(optimize::PoseGraph& graph) {
   mrpt::graphs::CNetworkOfPoses3DInf network;
   for (std::size_t i = 0; i < graph.world_from_node.size(); ++i)
-    network.nodes[i] = as_rivals(graph.world_from_node[i]);
+    network.nodes[i] = as_mrpt(graph.world_from_node[i]);
   for (const auto& edge : graph.edges) {
-    mrpt::poses::CPose3DPDFGaussianInf measured(as_rivals(edge.a_from_b));
+    mrpt::poses::CPose3DPDFGaussianInf measured(as_mrpt(edge.a_from_b));
     for (int row = 0; row < 6; ++row)
       for (int column = 0; column < 6; ++column)
         measured.cov_inv(row, column) = edge.information(row, column);
@@ -87,18 +87,18 @@ void solve_in_plane(optimize::PoseGraph& graph) {
 
 }  // namespace
 
-bool has_rival_graph_solver() { return true; }
+bool has_other_graph_solver() { return true; }
 
-void solve_by_rival(optimize::PoseGraph& graph) {
+void solve_with_other(optimize::PoseGraph& graph) {
   graph.is_planar ? solve_in_plane(graph) : solve_in_space(graph);
 }
 
 #else
 
-bool has_rival_graph_solver() { return false; }
+bool has_other_graph_solver() { return false; }
 
-void solve_by_rival(optimize::PoseGraph& /*graph*/) {
-  throw core::ContractError("the rival solver of pose graphs is part of this build");
+void solve_with_other(optimize::PoseGraph& /*graph*/) {
+  throw core::ContractError("the other solver of pose graphs is part of this build");
 }
 
 #endif

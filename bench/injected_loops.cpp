@@ -1,4 +1,4 @@
-// lies: what is left of a map when some of its loops are wrong?
+// injected_loops: how accurate is a pose graph with false loop closures, under every loss?
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -28,34 +28,34 @@ const Loss kLosses[] = {{"least squares", optimize::LoopLoss::kLeastSquares},
 
 struct Findings {
   std::vector<double> ate_m;
-  int num_lies = 0;
-  int num_believed_lies = 0;
+  int num_false = 0;
+  int num_accepted_false = 0;
   int num_true = 0;
-  int num_refused_true = 0;
+  int num_rejected_true = 0;
 };
 
 void solve(GraphWorld world, optimize::LoopLoss loss, Findings& findings) {
   const optimize::PoseGraphSummary summary = solve_pose_graph(world.graph, {.loop_loss = loss});
   findings.ate_m.push_back(ate_m(world));
-  for (std::size_t i = 0; i < world.is_lie.size(); ++i) {
+  for (std::size_t i = 0; i < world.is_outlier.size(); ++i) {
     if (!world.graph.edges[i].is_loop) continue;
-    const bool is_believed = summary.weights[i] >= 0.5;
-    findings.num_lies += world.is_lie[i];
-    findings.num_true += !world.is_lie[i];
-    findings.num_believed_lies += world.is_lie[i] && is_believed;
-    findings.num_refused_true += !world.is_lie[i] && !is_believed;
+    const bool is_accepted = summary.weights[i] >= 0.5;
+    findings.num_false += world.is_outlier[i];
+    findings.num_true += !world.is_outlier[i];
+    findings.num_accepted_false += world.is_outlier[i] && is_accepted;
+    findings.num_rejected_true += !world.is_outlier[i] && !is_accepted;
   }
 }
 
-// The loops that do not lie, alone, from where the nodes truly are: the best fit, of which least
-// squares from composed odometry may go astray.
-GraphWorld without_lies(const GraphWorld& world) {
+// The graph without its outlier edges, initialized at the true poses. Its solution is the best fit;
+// from composed odometry least squares may end in a local minimum.
+GraphWorld without_outliers(const GraphWorld& world) {
   GraphWorld rest = world;
   rest.graph.world_from_node = world.world_from_node;
   rest.graph.edges.clear();
-  for (std::size_t i = 0; i < world.is_lie.size(); ++i)
-    if (!world.is_lie[i]) rest.graph.edges.push_back(world.graph.edges[i]);
-  rest.is_lie.assign(rest.graph.edges.size(), false);
+  for (std::size_t i = 0; i < world.is_outlier.size(); ++i)
+    if (!world.is_outlier[i]) rest.graph.edges.push_back(world.graph.edges[i]);
+  rest.is_outlier.assign(rest.graph.edges.size(), false);
   return rest;
 }
 
@@ -65,17 +65,17 @@ struct Settings {
   std::string csv_file;
 };
 
-using Lie = void (*)(GraphWorld&, double, std::uint64_t);
+using AddOutliers = void (*)(GraphWorld&, double, std::uint64_t);
 
 struct Case {
   GraphKind kind;
-  std::string lie_name;
-  Lie lie;
+  std::string outliers_name;
+  AddOutliers add_outliers;
   double share;
   GraphNoise noise = {};
 };
 
-// Of good odometry: 0.3 m and 0.05 rad after 100 m.
+// Of accurate odometry: 0.3 m and 0.05 rad after 100 m.
 constexpr GraphNoise kLittleNoise = {0.01, 0.005};
 
 std::string name_of(const Case& one) {
@@ -83,7 +83,7 @@ std::string name_of(const Case& one) {
   return fmt::format("{}{}", name_of(one.kind), is_little ? ", little noise" : "");
 }
 
-// Walk by walk.
+// One for each seed.
 std::vector<double> ratios_of(const std::vector<double>& ate_m, const std::vector<double>& best_m) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < ate_m.size(); ++i) ratios.push_back(ate_m[i] / best_m[i]);
@@ -99,41 +99,41 @@ void add_rows(const Case& one, const Settings& settings, Table& table) {
   Findings best;
   for (int seed = settings.first_seed; seed < settings.first_seed + settings.num_seeds; ++seed) {
     GraphWorld world = make_graph(one.kind, one.noise, static_cast<std::uint64_t>(seed));
-    one.lie(world, one.share, static_cast<std::uint64_t>(seed));
-    solve(without_lies(world), optimize::LoopLoss::kLeastSquares, best);
+    one.add_outliers(world, one.share, static_cast<std::uint64_t>(seed));
+    solve(without_outliers(world), optimize::LoopLoss::kLeastSquares, best);
     for (std::size_t i = 0; i < by_loss.size(); ++i) solve(world, kLosses[i].loss, by_loss[i]);
   }
   for (std::size_t i = 0; i < by_loss.size(); ++i) {
     const Findings& found = by_loss[i];
     const std::vector<double> ratios = ratios_of(found.ate_m, best.ate_m);
-    table.rows.push_back({name_of(one), one.lie_name, fmt::format("{:.0f} %", 100 * one.share),
+    table.rows.push_back({name_of(one), one.outliers_name, fmt::format("{:.0f} %", 100 * one.share),
                           kLosses[i].name, fmt::format("{:.3f}", *core::median(best.ate_m)),
                           fmt::format("{:.3f}", *core::median(found.ate_m)),
                           fmt::format("{:.3f}", worst_of(found.ate_m)),
                           fmt::format("{:.2f}", *core::median(ratios)),
                           fmt::format("{:.2f}", worst_of(ratios)),
-                          fmt::format("{} of {}", found.num_believed_lies, found.num_lies),
-                          fmt::format("{} of {}", found.num_refused_true, found.num_true)});
+                          fmt::format("{} of {}", found.num_accepted_false, found.num_false),
+                          fmt::format("{} of {}", found.num_rejected_true, found.num_true)});
   }
 }
 
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const auto kind : {GraphKind::kHalls, GraphKind::kGrid}) {
-    all.push_back({kind, "none", lie_at_random, 0.0});
+    all.push_back({kind, "none", add_random_outliers, 0.0});
     for (const double share : {0.01, 0.05, 0.2, 0.5})
-      all.push_back({kind, "random", lie_at_random, share});
+      all.push_back({kind, "random", add_random_outliers, share});
     for (const double share : {0.01, 0.05, 0.2, 0.5})
-      all.push_back({kind, "consistent", lie_together, share});
+      all.push_back({kind, "consistent", add_consistent_outliers, share});
     for (const double share : {0.01, 0.05, 0.2, 0.5})
-      all.push_back({kind, "consistent", lie_together, share, kLittleNoise});
+      all.push_back({kind, "consistent", add_consistent_outliers, share, kLittleNoise});
   }
   return all;
 }
 
 void measure(const Settings& settings) {
-  Table table{{"graph", "lies", "share", "loss", "ATE m without the lies", "ATE m", "worst",
-               "ratio", "worst ratio", "lies believed", "true refused"},
+  Table table{{"graph", "false loops", "share", "loss", "ATE m without false loops", "ATE m",
+               "worst", "ratio", "worst ratio", "false loops accepted", "true rejected"},
               {}};
   const std::vector<Case> all = cases();
   core::Progress progress("cases", static_cast<int>(all.size()));
@@ -147,10 +147,10 @@ void measure(const Settings& settings) {
 
 std::function<void()> set_up(CLI::App& app) {
   const auto settings = std::make_shared<Settings>();
-  app.name("lies");
-  app.description("Pose graphs some of whose loops are wrong, under every loss.");
-  app.add_option("--seeds", settings->num_seeds, "walks of each kind")->check(CLI::Range(1, 100));
-  app.add_option("--first-seed", settings->first_seed, "of the first walk");
+  app.name("injected_loops");
+  app.description("ATE of pose graphs with false loop closures, under every loss.");
+  app.add_option("--seeds", settings->num_seeds, "graphs of each kind")->check(CLI::Range(1, 100));
+  app.add_option("--first-seed", settings->first_seed, "of the first graph");
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

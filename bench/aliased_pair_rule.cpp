@@ -1,4 +1,4 @@
-#include "impostor_rule.hpp"
+#include "aliased_pair_rule.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +22,10 @@ std::vector<int> every(int step, int num_frames) {
   return frames;
 }
 
-using Pairs = std::set<std::pair<int, int>>;  // either frame first
+using Pairs = std::set<std::pair<int, int>>;  // in both orders
 
-// The impostors that the truth names, by either frame; empty where it has no such list.
-Pairs listed_impostors(const core::Truth& truth) {
+// The aliased pairs of the truth, in both orders.
+Pairs listed_pairs(const core::Truth& truth) {
   Pairs pairs;
   for (const core::FramePair& pair : truth.aliased_pairs) {
     pairs.emplace(pair.query, pair.match);
@@ -34,7 +34,7 @@ Pairs listed_impostors(const core::Truth& truth) {
   return pairs;
 }
 
-ImpostorRule rule_of_places(const KnownFrames& frames, int query_step) {
+AliasedPairRule rule_of_places(const KnownFrames& frames, int query_step) {
   const auto is_elsewhere = [places = *frames.truth.places](int query, int match) {
     return places.at(query, match) == core::PlaceTruth::kDifferent &&
            places.at(match, query) == core::PlaceTruth::kDifferent;
@@ -42,48 +42,48 @@ ImpostorRule rule_of_places(const KnownFrames& frames, int query_step) {
   const auto offer = [is_elsewhere, stamps_s = frames.stamps_s](int query, int match) {
     const double apart_s = std::abs(stamps_s[static_cast<std::size_t>(query)] -
                                     stamps_s[static_cast<std::size_t>(match)]);
-    return apart_s > kOwnMoment_s && is_elsewhere(query, match) ? Offer::kImpostor
+    return apart_s > kOwnMoment_s && is_elsewhere(query, match) ? Offer::kAliased
                                                                 : Offer::kTakenOut;
   };
   return {"other places", every(query_step, static_cast<int>(frames.names.size())), offer};
 }
 
-ImpostorRule rule_of_list(const Pairs& pairs, int query_step) {
-  ImpostorRule rule{.name = "listed impostors", .queries = {}, .offer = nullptr};
+AliasedPairRule rule_of_list(const Pairs& pairs, int query_step) {
+  AliasedPairRule rule{.name = "aliased pairs", .queries = {}, .offer = nullptr};
   int next_query = 0;
-  // not the multiples of the step: a list may name few frames, and none of those
+  // not the multiples of the step: a short list may contain none of those
   for (const auto& [query, match] : pairs) {
     if (query < next_query) continue;
     rule.queries.push_back(query);
     next_query = query + query_step;
   }
   rule.offer = [pairs](int query, int match) {
-    return pairs.contains({query, match}) ? Offer::kImpostor : Offer::kTakenOut;
+    return pairs.contains({query, match}) ? Offer::kAliased : Offer::kTakenOut;
   };
   return rule;
 }
 
 }  // namespace
 
-std::vector<ImpostorRule> rules_of_truth(const KnownFrames& frames, int query_step) {
-  std::vector<ImpostorRule> rules;
+std::vector<AliasedPairRule> rules_of_truth(const KnownFrames& frames, int query_step) {
+  std::vector<AliasedPairRule> rules;
   if (frames.truth.places) rules.push_back(rule_of_places(frames, query_step));
-  const Pairs listed = listed_impostors(frames.truth);
+  const Pairs listed = listed_pairs(frames.truth);
   if (!listed.empty()) rules.push_back(rule_of_list(listed, query_step));
   if (rules.empty()) {
-    throw core::InputError("the truth says nothing about places; expected a place matrix");
+    throw core::InputError("the truth has no places; expected a place matrix");
   }
   return rules;
 }
 
-ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {
+AliasedPairRule tower_rule(const std::filesystem::path& folder, int num_queries) {
   const auto images = std::make_shared<const std::vector<TowerImage>>(read_tower(folder));
   std::vector<int> all_queries;
   for (std::size_t i = 0; i < images->size(); ++i) {
     if (!(*images)[i].is_gallery) all_queries.push_back(static_cast<int>(i));
   }
   const int num_all = static_cast<int>(all_queries.size());
-  ImpostorRule rule{.name = "clip-out", .queries = {}, .offer = nullptr};
+  AliasedPairRule rule{.name = "clip-out", .queries = {}, .offer = nullptr};
   core::Random random(kPermutationSeed);
   for (const int drawn : random.distinct_indices(std::min(num_queries, num_all), num_all)) {
     rule.queries.push_back(all_queries[static_cast<std::size_t>(drawn)]);
@@ -93,7 +93,7 @@ ImpostorRule tower_rule(const std::filesystem::path& folder, int num_queries) {
     const TowerImage& own = (*images)[static_cast<std::size_t>(query)];
     const TowerImage& other = (*images)[static_cast<std::size_t>(match)];
     if (!other.is_gallery || other.clip == own.clip) return Offer::kTakenOut;
-    return other.floor == own.floor ? Offer::kRight : Offer::kImpostor;
+    return other.floor == own.floor ? Offer::kSamePlace : Offer::kAliased;
   };
   return rule;
 }

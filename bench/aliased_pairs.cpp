@@ -1,6 +1,6 @@
-// How often does another place pass for this one? For each source: of the frames that look most
-// like a query (by MobileNetV2 and by HOG), none of its own place, the most ORB matches under one
-// fundamental matrix, the field's usual check.
+// aliased_pairs SOURCE...: how similar are views of different places? For each query the most ORB
+// inliers of one fundamental matrix, the usual check, among the most similar frames of other places
+// (by MobileNetV2 and by HOG).
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "impostor_rule.hpp"
+#include "aliased_pair_rule.hpp"
 #include "most_alike.hpp"
 #include "orb_matches.hpp"
 #include "program.hpp"
@@ -40,7 +40,7 @@ struct Options {
   std::string csv_file;
 };
 
-// All that is asked of the frames of a source, kept so that each is rendered or read once.
+// Features and descriptors of all frames of a source; each frame is rendered or read once.
 struct SourceViews {
   KnownFrames known;
   std::vector<OrbFeatures> orb;
@@ -60,7 +60,7 @@ SourceViews view(const std::string& name, MobileNet& mobilenet) {
   config.source = is_tower(name) ? (std::filesystem::path(name) / "walk.txt").string() : name;
   const auto source = run::open_source(config);
   const auto describer = describe::make_describer(config.describe);
-  core::Progress progress("looking at " + name, source->info().num_frames);
+  core::Progress progress("describing " + name, source->info().num_frames);
   SourceViews views;
   while (const auto frame = source->next()) {
     const cv::Mat& image = frame->images.front();
@@ -75,7 +75,7 @@ SourceViews view(const std::string& name, MobileNet& mobilenet) {
   return views;
 }
 
-// Inliers of a pair, counted once however many shortlists it is on.
+// Inliers of a pair, counted once even if it is on several shortlists.
 class InlierCounts {
  public:
   explicit InlierCounts(const std::vector<OrbFeatures>& orb) : orb_(orb) {}
@@ -94,7 +94,7 @@ class InlierCounts {
   std::map<std::pair<int, int>, int> counts_;
 };
 
-std::vector<int> offered_to(int query, const ImpostorRule& rule, int num_frames) {
+std::vector<int> offered_to(int query, const AliasedPairRule& rule, int num_frames) {
   std::vector<int> offered;
   for (int match = 0; match < num_frames; ++match) {
     if (match != query && rule.offer(query, match) != Offer::kTakenOut) offered.push_back(match);
@@ -102,23 +102,23 @@ std::vector<int> offered_to(int query, const ImpostorRule& rule, int num_frames)
   return offered;
 }
 
-// Inliers of the frame of the shortlist that has most; 0 if that frame is of the right place.
-int inliers_of_best(int query, const std::vector<int>& shortlist, const ImpostorRule& rule,
+// Inliers of the frame on the shortlist with most inliers; 0 if it shows the same place.
+int inliers_of_best(int query, const std::vector<int>& shortlist, const AliasedPairRule& rule,
                     InlierCounts& counts) {
   int most = 0;
-  bool is_impostor = false;
+  bool is_aliased = false;
   for (const int match : shortlist) {
     const int num_inliers = counts.of(query, match);
     if (num_inliers <= most) continue;
     most = num_inliers;
-    is_impostor = rule.offer(query, match) == Offer::kImpostor;
+    is_aliased = rule.offer(query, match) == Offer::kAliased;
   }
-  return is_impostor ? most : 0;
+  return is_aliased ? most : 0;
 }
 
-// Per query that is offered anything: inliers of its best impostor.
-std::vector<int> best_impostors(const std::vector<std::vector<float>>& vectors,
-                                const ImpostorRule& rule, InlierCounts& counts) {
+// For each query with a shortlist: most inliers of an aliased view.
+std::vector<int> inliers_of_best_aliased(const std::vector<std::vector<float>>& vectors,
+                                         const AliasedPairRule& rule, InlierCounts& counts) {
   core::Progress progress("matching " + rule.name, static_cast<int>(rule.queries.size()));
   std::vector<int> best;
   int num_done = 0;
@@ -145,14 +145,14 @@ std::string median_of(std::vector<int> best) {
 
 void measure(const std::string& name, const Options& options, MobileNet& mobilenet, Table& table) {
   const SourceViews views = view(name, mobilenet);
-  const std::vector<ImpostorRule> rules =
+  const std::vector<AliasedPairRule> rules =
       is_tower(name) ? std::vector{tower_rule(name, options.num_tower_queries)}
                      : rules_of_truth(views.known, options.query_step);
   InlierCounts counts(views.orb);
-  for (const ImpostorRule& rule : rules) {
+  for (const AliasedPairRule& rule : rules) {
     for (const auto& [method, vectors] :
          {std::pair("MobileNetV2", &views.mobilenet), std::pair("HOG", &views.hog)}) {
-      const std::vector<int> best = best_impostors(*vectors, rule, counts);
+      const std::vector<int> best = inliers_of_best_aliased(*vectors, rule, counts);
       std::vector<std::string> row = {name, rule.name, method, std::to_string(best.size())};
       for (const int gate : kGates) row.push_back(share_at_least(gate, best));
       row.push_back(median_of(best));
@@ -178,21 +178,22 @@ void measure_all(const Options& options) {
 std::function<void()> set_up(CLI::App& app) {
   auto options = std::make_shared<Options>();
   options->network = default_network();
-  app.name("impostors");
+  app.name("aliased_pairs");
   app.description(
-      "Share of queries whose best impostor has at least so many inliers: of the 50 frames that\n"
-      "look most like the query, its own place taken out, the most ORB matches (1500 features,\n"
-      "ratio 0.8) under one fundamental matrix.");
+      "Share of queries with an aliased view of at least so many inliers: most ORB matches (1500\n"
+      "features, ratio 0.8) under one fundamental matrix, among the 50 most similar frames "
+      "without\n"
+      "the place of the query.");
   app.add_option("SOURCE", options->sources,
                  "recordings with place truth, the folder of IE Tower, or twin:PRESET?similarity=S")
       ->required();
   app.add_option("--network", options->network, "MobileNetV2 as ONNX with an output `embedding`")
       ->capture_default_str();
-  app.add_option("--step", options->query_step, "every so many frames is a query")
+  app.add_option("--step", options->query_step, "frames from one query to the next")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--tower-queries", options->num_tower_queries,
-                 "so many of IE Tower's queries, by a fixed permutation")
+                 "number of queries on IE Tower, drawn by a fixed permutation")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--csv", options->csv_file, "write the table to this file, too");
