@@ -98,7 +98,7 @@ inline void visit_landmark_fields(Config& config, core::FieldVisitor& visit) {
          .max = 50.0});
 }
 
-// How all of the map is bettered when a loop has moved it.
+// Full bundle adjustment after loops.
 inline void visit_full_bundle_fields(Config& config, core::FieldVisitor& visit) {
   visit("full_bundle_observations", config.full_bundle_observations,
         {.help = "observations per keyframe in full bundle adjustment, about",
@@ -131,7 +131,7 @@ inline void visit_full_bundle_window_fields(Config& config, core::FieldVisitor& 
          .is_expert = true});
 }
 
-// How both are bettered, and which go again.
+// Local bundle adjustment and culling.
 inline void visit_refinement_fields(Config& config, core::FieldVisitor& visit) {
   visit("bundle_keyframes", config.bundle_keyframes,
         {.help = "keyframes optimized by local bundle adjustment; 1: the new one only",

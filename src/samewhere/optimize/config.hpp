@@ -20,7 +20,7 @@ struct GncConfig {
   double max_support_ratio = 0.5;
 };
 
-inline void visit_fields(GncConfig& config, core::FieldVisitor& visit) {
+inline void visit_iterations(GncConfig& config, core::FieldVisitor& visit) {
   visit("growth", config.growth,
         {.help = "factor of the control parameter per round (Yang et al., RA-L 2020: 1.4)",
          .min = 1.01,
@@ -34,6 +34,10 @@ inline void visit_fields(GncConfig& config, core::FieldVisitor& visit) {
        .min = 1,
        .max = 1000,
        .is_expert = true});
+}
+
+inline void visit_fields(GncConfig& config, core::FieldVisitor& visit) {
+  visit_iterations(config, visit);
   visit("num_retests", config.num_retests,
         {.help = "times that rejected loop edges are re-tested, within shrinking limits",
          .min = 0,

@@ -45,8 +45,8 @@ struct OpenRecording {
 
 // Opens each source once, and has its truth: what a twin building has to compute for that is
 // computed now. Throws InputError naming the source if it cannot be opened or its truth says
-// nothing about places, and on two recordings of one name and window, whose figures nobody could
-// tell apart; Interrupted after Ctrl-C.
+// nothing about places, and on two recordings of one name and window, whose figures could
+// not be told apart; Interrupted after Ctrl-C.
 std::vector<OpenRecording> open_recordings(const std::vector<pipeline::Config>& configs);
 
 // What files on this recording are called: name and window, in letters, digits and -_. only.
@@ -72,8 +72,8 @@ struct DescribedRecording {
 using SeePicture = std::function<void(const cv::Mat& picture)>;
 
 // Reads the recording and describes each frame by each describer, with a progress line on stderr;
-// `also_see` is shown each picture once. Descriptions are timed after that, when nobody reads or
-// renders any more: those of up to 400 frames, spread evenly, by one describer after the other.
+// `also_see` is shown each picture once. Descriptions are timed after that, when reading and
+// rendering have ended: those of up to 400 frames, spread evenly, by one describer after the other.
 // Nothing after Ctrl-C. Throws InputError on a bad frame.
 std::optional<DescribedRecording> describe_recording(OpenRecording recording,
                                                      const std::vector<NamedDescriber>& describers,

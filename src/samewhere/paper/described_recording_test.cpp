@@ -50,7 +50,7 @@ void write_walk(const input::TestFolder& folder, const std::string& name, int nu
   folder.write(name + "/same_place.txt", truth);
 }
 
-TEST(OpenRecordings, RefusesTwoThatNobodyCouldTellApart) {
+TEST(OpenRecordings, RefusesTwoOfOneNameAndWindow) {
   const input::TestFolder folder;
   write_walk(folder, "a/walk", 2);
   write_walk(folder, "b/walk", 2);

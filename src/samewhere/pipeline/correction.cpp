@@ -13,8 +13,8 @@ Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
   correct::Closing closing = correct::close_loop(map, loop, config.optimize, overruled);
   scene::MapVersion corrected = apply(map, closing.edit);
   if (!closing.withdrawn.empty()) corrected = with_places_parted(map, std::move(corrected), config);
-  for (const auto& believed : closing.accepted)
-    for (const auto& edit : map::fuse_across(corrected, believed, config.map, config.features))
+  for (const auto& accepted : closing.accepted)
+    for (const auto& edit : map::fuse_across(corrected, accepted, config.map, config.features))
       corrected = apply(std::move(corrected), edit);
   return {std::move(corrected), std::move(closing)};
 }

@@ -8,19 +8,19 @@
 
 namespace samewhere::pipeline {
 
-// What a loop made of a map.
+// A map after one more loop.
 struct Correction {
   scene::MapVersion map;
   correct::Closing closing;  // as it was carried out
 };
 
-// The map with one more loop: poses are solved (correct::close_loop), places that loops withdrawn
-// for its sake had made one are parted, and what both ends of those that are believed from now on
-// show is fused. A loop that is refused moves nothing. `overruled`: see close_loop.
+// The map with one more loop: pose graph optimization (correct::close_loop), withdrawal of
+// contradicted loops with their effects, fusion of the landmarks at both ends of the accepted ones.
+// A rejected loop changes nothing. `overruled`: see close_loop.
 Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                      const Config& config, core::CandidateId overruled = {});
 
-// Why a loop that the graph of loops does not believe is none.
+// Reason for which the robust pose graph rejects the loop.
 std::string bent_by(const correct::OutlierLoop& bent, const Config& config);
 
 }  // namespace samewhere::pipeline

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kNumFrames = 120;  // 8 s
 constexpr double kRight_m = 0.1;
-// who comes back from the dark sees the old map from afar
+// after the dark the old map is seen from afar
 constexpr double kRightFromAfar_m = 0.15;
 
 // How many frames of a walk have a pose, and how many of these poses are right.

@@ -36,7 +36,7 @@ class FullBundles {
 
   // Loops have moved the map.
   void note_correction(const scene::MapVersion& map);
-  // The map begins anew.
+  // The map is re-initialized.
   void forget();
   // Begins what is called for, if it is time.
   void begin(const scene::MapVersion& map);

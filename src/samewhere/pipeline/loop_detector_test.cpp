@@ -15,7 +15,7 @@
 namespace samewhere::pipeline {
 namespace {
 
-// A view in which nothing can be found again: similarity alone speaks.
+// A view without features: similarity alone decides.
 features::View blank_view(std::uint64_t frame) {
   return {.frame = core::FrameId(frame),
           .stamp_s = 0.0,

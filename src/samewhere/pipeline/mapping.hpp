@@ -53,7 +53,7 @@ class Mapping {
   bool hear_loops(int max_unheard);
   void note(const LoopAnswer& answer);
   bool correct(const AcceptedLoop& heard);
-  // The same loop, if it is one still: it was accepted on a map that believed other loops.
+  // The same loop, if it is one still: it was accepted on a map with other accepted loops.
   std::optional<AcceptedLoop> reverified(AcceptedLoop heard);
   // What the pose graph makes of the judge's verdicts goes into the ledger, too.
   void think_again(const correct::Closing& closing, const scene::LoopEdge& newest);

@@ -17,21 +17,21 @@
 #include <samewhere/scene/map_version.hpp>
 
 // What the stages of SLAM say to each other. Tracking asks mapping, mapping asks loop closing and
-// bundling; nobody else talks.
+// bundle adjustment. No other messages exist.
 
 namespace samewhere::pipeline {
 
 // --- Tracking to mapping. Keyframes get their ids in the order of the messages that bring them.
 
-// The map begins, or begins anew, with this view, which has depth. What it showed before is given
-// up. Answered at once.
+// Initialization or re-initialization with this view, which has depth. The map before is discarded.
+// Answered at once.
 struct StartMap {
   features::View view;
   cv::Mat image;
 };
 
-// The map begins, or begins anew, with two views of one camera; the image is the second one's. What
-// it showed before is given up. Answered when both stand where a bundle put them.
+// Initialization or re-initialization with two views of one camera; the image is the second one's.
+// The map before is discarded. Answered when bundle adjustment has placed both.
 struct StartMapByMotion {
   map::ViewPair views;
   cv::Mat image;
@@ -64,11 +64,11 @@ struct EndOfInput {
 using ToMapping =
     std::variant<StartMap, StartMapByMotion, AddKeyframe, FindPlace, SaveFrames, EndOfInput>;
 
-// Where somebody who is lost may be.
+// Where a lost camera may be.
 struct Place {
   core::KeyframeId keyframe;
   std::optional<core::Rigid3> keyframe_from_body;  // none: views without depth do not tell
-  bool is_recognised = false;  // by the judge, or he was there last; else it only looks alike
+  bool is_recognised = false;  // by the loop verifier, or the last reference; else retrieved only
 };
 
 // --- Mapping to tracking.
@@ -109,8 +109,7 @@ struct LoopAnswer {
   std::optional<scene::Thumbnail> thumbnail;   // of the keyframe
 };
 
-// --- Mapping to whoever bundles the whole map beside everything else; answered with what it found
-// for that version.
+// --- Mapping to full bundle adjustment; answered with its result for that version.
 struct BundleAll {
   scene::MapVersion map;
   map::BundleWindow window;

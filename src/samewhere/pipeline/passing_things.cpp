@@ -7,7 +7,7 @@ namespace samewhere::pipeline {
 
 namespace {
 
-// Somebody who walks is beside himself after a quarter of a second, and elsewhere after one.
+// A walking person has moved by a body width after a quarter of a second, and left after one.
 constexpr double kInterval_s = 0.25;
 constexpr std::size_t kNumSeen = 4;
 constexpr double kOldest_s = 1.05;  // four intervals, and what frames come late

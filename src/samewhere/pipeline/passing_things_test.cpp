@@ -41,7 +41,7 @@ TEST_F(PassingThingsTest, WhereTheViewWentThroughSomethingHasCome) {
   EXPECT_GT(shown_at(1.0).size(), 0.8 * view_.features->size());
 }
 
-TEST_F(PassingThingsTest, WhereItEndedOrIsUnknownNobodyCanTell) {
+TEST_F(PassingThingsTest, WhereItEndedOrIsUnknownNothingIsMoving) {
   see(0.2, 1.5);
   see(0.6, 0.0);
   EXPECT_TRUE(shown_at(1.0).empty());

@@ -19,7 +19,7 @@ namespace samewhere::pipeline {
 class LookAlikeRooms : public testing::Test {
  protected:
   static constexpr std::size_t kPerRoom = 6;  // keyframes, before a loop is closed
-  static inline const core::CandidateId kLie{7};
+  static inline const core::CandidateId kFalseLoop{7};
 
   // Unless a test asks for it no keyframe is culled: what loops do to the map is plainer to see.
   LookAlikeRooms() {
@@ -85,7 +85,9 @@ class LookAlikeRooms : public testing::Test {
   }
 
   // The last keyframe of the second room is the last one of the first, says what they show.
-  static scene::LoopEdge lie() { return loop(2 * kPerRoom - 1, kPerRoom - 1, {}, kLie); }
+  static scene::LoopEdge false_loop() {
+    return loop(2 * kPerRoom - 1, kPerRoom - 1, {}, kFalseLoop);
+  }
 
   scene::MapVersion closed(const scene::MapVersion& before, const scene::LoopEdge& heard) const {
     return with_loop(before, correct::between_holders(before, heard).value(), config_).map;

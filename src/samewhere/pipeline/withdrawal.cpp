@@ -27,11 +27,11 @@ std::set<core::KeyframeId> changed_keyframes(const MapVersion& before, const Map
   return changed;
 }
 
-constexpr int kRounds = 2;                // of bundles, the second with what was found again
+constexpr int kRounds = 2;  // of bundle adjustment, the second with re-matched landmarks
 constexpr std::size_t kMaxTogether = 60;  // more make a bundle slow
 
-// Together, or what holds one of them would be as far off as it is itself. Where that is too many,
-// the oldest first: who is younger is held by them.
+// All at once, since fixed neighbours would be as wrong as the keyframes themselves. Too many are
+// split, the oldest first, which then constrain the younger ones.
 MapVersion bundled(MapVersion map, const std::set<core::KeyframeId>& keyframes,
                    const Config& config) {
   map::BundleSettings settings{config.map, config.features, config.optimize};

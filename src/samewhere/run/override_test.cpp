@@ -73,10 +73,10 @@ TEST_F(OverrideInRooms, AForcedLoopCorrectsTheMapAndIsMarkedAsByHand) {
 }
 
 TEST_F(OverrideInRooms, ARejectedLoopLeavesTheMapAsIfItHadNeverBeen) {
-  const MapVersion with_false = closed(map_, lie());
+  const MapVersion with_false = closed(map_, false_loop());
   ASSERT_GT(num_seen_in_both_rooms(with_false), 100);
   const OverriddenMap changed =
-      with_rejected(with_false, accepted(row_of(lie(), kLie.index())), config_);
+      with_rejected(with_false, accepted(row_of(false_loop(), kFalseLoop.index())), config_);
   EXPECT_TRUE(changed.map.loops.empty());
   EXPECT_EQ(survivors(changed.map), survivors(map_));
   ASSERT_EQ(changed.rows.size(), 1U);
@@ -88,7 +88,7 @@ TEST_F(OverrideInRooms, WhatOdometryAndOtherLoopsContradictIsNotForced) {
   map_ = with_next(with_next(with_next(map_)));
   map_ = closed(closed(map_, true_loop(13, 1)), true_loop(14, 0));
   ASSERT_EQ(map_.loops.size(), 2U);
-  EXPECT_THAT(why_not_forced(row_of(lie(), 5)), HasSubstr("chi-square"));
+  EXPECT_THAT(why_not_forced(row_of(false_loop(), 5)), HasSubstr("chi-square"));
 }
 
 // Odometry and a true loop against a false one; a loop inside the first room has no part in it.
@@ -96,15 +96,15 @@ TEST_F(OverrideInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
   map_ = with_next(with_next(with_next(map_)));
   const scene::LoopEdge inside = loop(3, 0, inverse(truth(0)) * truth(3), core::CandidateId(2000));
   const core::LedgerRow inside_row = accepted(row_of(inside, inside.cause.index()));
-  const core::LedgerRow lie_row = accepted(row_of(lie(), kLie.index()));
+  const core::LedgerRow false_row = accepted(row_of(false_loop(), kFalseLoop.index()));
   const core::LedgerRow row = row_of(true_loop(13, 1), 5);
-  const MapVersion with_false = closed(closed(map_, inside), lie());
+  const MapVersion with_false = closed(closed(map_, inside), false_loop());
   ASSERT_EQ(with_false.loops.size(), 2U);
-  const OverriddenMap changed = with_forced(with_false, row, {inside_row, lie_row, row}, config_);
+  const OverriddenMap changed = with_forced(with_false, row, {inside_row, false_row, row}, config_);
   ASSERT_EQ(changed.rows.size(), 2U) << "what it leaves as it was gets none";
   EXPECT_EQ(changed.rows[0].candidate.id, row.candidate.id);
   const core::LedgerRow& withdrawn = changed.rows[1];
-  EXPECT_EQ(withdrawn.candidate.id, kLie);
+  EXPECT_EQ(withdrawn.candidate.id, kFalseLoop);
   EXPECT_FALSE(core::is_loop(withdrawn.verdict));
   EXPECT_THAT(core::reason_of(withdrawn.verdict), HasSubstr("candidate 5"));
   EXPECT_TRUE(core::evidence_of(withdrawn.verdict).geometry) << "its evidence is kept";
@@ -112,7 +112,7 @@ TEST_F(OverrideInRooms, OtherLoopsWhoseFateItChangesGetTheirOwnRows) {
 }
 
 TEST_F(OverrideInRooms, WhatCannotBeForcedSaysWhy) {
-  const core::LedgerRow row = row_of(lie(), 5);
+  const core::LedgerRow row = row_of(false_loop(), 5);
   EXPECT_THAT(why_not_forced(accepted(row)), HasSubstr("a loop closure already"));
   core::LedgerRow lost = row;
   lost.candidate.origin = core::Origin::kRelocalization;

@@ -94,7 +94,7 @@ inline void visit_fields(InitializationConfig& config, core::FieldVisitor& visit
   visit_giving_up(config, visit);
 }
 
-// Who has lost his place, and where he may be found.
+// Relocalization.
 struct RelocalizationConfig {
   double max_speed_m_s = 3.0;
   double max_ratio_without_depth = 0.9;

@@ -56,14 +56,14 @@ TEST_F(TestTracker, FindsThePoseWithoutOrWithAWrongGuess) {
   }
 }
 
-TEST_F(TestTracker, WhoDoesNotKnowWhereHeIsLooksAmongTheNear) {
+TEST_F(TestTracker, WithoutAPredictionTheNearLandmarksAreMatched) {
   const features::View view = features::test_view(world_, 1, moved_);
   map_.num_near = 5;
   EXPECT_FALSE(tracker_.track_anywhere(view, map_));
   map_.num_near = 60;
   const auto track = tracker_.track_anywhere(view, map_);
   ASSERT_TRUE(track);
-  EXPECT_GT(track->matches.size(), 60U) << "once he knows, all that should be there is looked for";
+  EXPECT_GT(track->matches.size(), 60U) << "with a pose all visible landmarks are searched";
 }
 
 // Landmarks that look like features of the view and stand where a wrong pose would see them.
@@ -89,7 +89,7 @@ TEST_F(TestTracker, AFewThatAgreeNearAWrongGuessDoNotWin) {
   credulous.track.sure_inliers = 6;
   const auto fooled = Tracker(credulous).track(view, map, wrong);
   ASSERT_TRUE(fooled);
-  ASSERT_LT(error_of(*fooled, wrong), 0.01) << "the decoys must be good enough to fool somebody";
+  ASSERT_LT(error_of(*fooled, wrong), 0.01) << "the decoys must be good enough";
   ASSERT_GT(fooled->pose.num_inliers, credulous.track.weak_inliers);
   const auto track = tracker_.track(view, map, wrong);
   ASSERT_TRUE(track);

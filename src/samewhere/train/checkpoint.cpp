@@ -44,9 +44,9 @@ std::string_view after_line(std::string_view text) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::string_view why) {
-  throw InputError(
-      fmt::format("{}: {}, expected the checkpoint of a training; remove it to begin anew",
-                  path.string(), why));
+  throw InputError(fmt::format(
+      "{}: {}, expected the checkpoint of a training; remove it to start from the beginning",
+      path.string(), why));
 }
 
 Checkpoint from_header(const json& header) {

@@ -63,12 +63,13 @@ void TrainingRun::resume(Checkpoint found, const std::string& option) {
   if (found.network != state_.network) {
     throw InputError(fmt::format(
         "{}: was made by commit {} with another network ({}), this program has {}; go on with that "
-        "one, or remove it to begin anew",
+        "one, or remove it to start from the beginning",
         checkpoint_path_.string(), fmt::join(found.commits, ", "), found.network, state_.network));
   }
   if (found.images_sha256 != state_.images_sha256) {
     throw InputError(
-        fmt::format("{}: was made with other images; give the same {}, or remove it to begin anew",
+        fmt::format("{}: was made with other images; give the same {}, or remove it to start from "
+                    "the beginning",
                     checkpoint_path_.string(), option));
   }
   const std::string commit = state_.commits.back();

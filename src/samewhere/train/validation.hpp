@@ -15,7 +15,7 @@ namespace samewhere::train {
 using Encode = std::function<std::vector<float>(const cv::Mat& input)>;
 using Codes = std::vector<std::vector<float>>;
 
-// The share of validation views that are found again (share_found) when seen from elsewhere
+// The share of validation views that are retrieved (share_found) when seen from elsewhere
 // (distorted_input, always warped). Unlike the loss, comparable between codes of any kind. The same
 // distortions for the same config.seed.
 double recognition(const ImageSet& images, const Split& split, const Config& config,

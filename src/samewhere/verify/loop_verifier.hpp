@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <samewhere/core/ledger.hpp>
@@ -26,7 +25,7 @@ struct VerifierSettings {
 // Holds no view and no map.
 class LoopVerifier {
  public:
-  explicit LoopVerifier(VerifierSettings settings) : settings_(std::move(settings)) {}
+  explicit LoopVerifier(const VerifierSettings& settings) : settings_(settings) {}
 
   const Config& config() const { return settings_.config(); }
 

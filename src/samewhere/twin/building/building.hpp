@@ -29,7 +29,7 @@ struct Area {
 struct Object {
   std::string name;  // "door plate 302", "poster"
   int unit = 0;      // index
-  // Nothing else in the building looks like it: whoever recognises it knows where they are.
+  // Nothing else in the building looks like it: recognizing it determines the place.
   bool is_unique = false;
 };
 

@@ -43,7 +43,7 @@ Material plain(Finish finish, const Colour& colour, core::Random& random) {
 }
 
 // A body in the making: x to its left, as seen from the front the right, y up, z forward; metres
-// of somebody of the usual height.
+// of a person of the usual height.
 class Body {
  public:
   Body(const Look& look, Shapes& shapes)
@@ -64,7 +64,7 @@ class Body {
                  const Material& material) {
     shapes_.add_block({scale_ * low_m, scale_ * high_m}, material);
   }
-  // In metres of somebody of the usual height.
+  // In metres of a person of the usual height.
   void add_post(Post post, const Material& material) {
     post.low_m *= scale_;
     post.high_m *= scale_;

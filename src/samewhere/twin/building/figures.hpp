@@ -7,7 +7,7 @@
 
 namespace samewhere::twin {
 
-// What somebody looks like.
+// Appearance of a person.
 struct Look {
   float height_m = 1.75F;
   float girth = 1.0F;  // over the usual
@@ -22,13 +22,13 @@ struct Look {
   Material bag;
 };
 
-// Nobody else has the same clothes.
+// No two persons have the same clothes.
 Look look_of(std::uint64_t seed);
 
 // Metres forward in one whole step of the walking cycle: left and right foot once each.
 float stride_m(const Look& look);
 
-// Somebody who walks on a level floor, in the world: some 480 rectangles. `phase` counts whole
+// A person that walks on a level floor, in the world: some 480 rectangles. `phase` counts whole
 // strides, so that a walk at constant speed v has phase v t / stride; `position_m` is the point of
 // the floor below the hips, and they walk along the heading (from the x axis towards the y axis).
 std::vector<Rectangle> figure(const Look& look, float phase, const Eigen::Vector3f& position_m,

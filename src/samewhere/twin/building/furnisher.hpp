@@ -8,7 +8,7 @@ namespace samewhere::twin {
 
 class Piece;
 
-// An upright plane from its left to its right end, as seen by who stands before it. Metres, in the
+// An upright plane from its left to its right end, as seen from the front. Metres, in the
 // coordinates of the unit.
 struct Wall {
   Eigen::Vector2f from_m = Eigen::Vector2f::Zero();
@@ -118,7 +118,7 @@ class Furnisher {
   void add_ceiling_lamp(const Eigen::Vector2f& middle_m, const LampFitting& fitting,
                         float ceiling_m);
   void add_ceiling_vent(const Eigen::Vector2f& middle_m, VentKind kind, float ceiling_m);
-  // Hangs across a corridor: read by who walks along `heading_rad` or against it.
+  // Hangs across a corridor: read by people that walk along `heading_rad` or against it.
   void add_exit_sign(const Eigen::Vector2f& middle_m, float heading_rad, float ceiling_m);
   void add_smoke_detector(const Eigen::Vector2f& middle_m, float ceiling_m);
   void add_high_bay_lamp(const Eigen::Vector2f& middle_m, float ceiling_m);

@@ -11,7 +11,7 @@ Space room(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, int unit
   return {.name = "room", .unit = unit, .low_m = low_m, .high_m = high_m};
 }
 
-// Towards whoever stands before the wall.
+// Out of the wall, into the room.
 Eigen::Vector2f out_of(const Wall& wall) {
   const Eigen::Vector2f right = (wall.to_m - wall.from_m).normalized();
   return {right.y(), -right.x()};

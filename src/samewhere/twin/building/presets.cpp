@@ -26,7 +26,7 @@ constexpr std::array<Builder, 8> kBuilders = {{{"office-loop", office_loop},
                                                {"long-haul", long_haul},
                                                {"second-visit", second_visit}}};
 
-// What bears the same name as another thing tells nobody where they are.
+// A name that several things bear does not determine the place.
 void keep_unique_names(Building& building) {
   std::map<std::string, int> num_with_name;
   for (const auto& object : building.objects) ++num_with_name[object.name];

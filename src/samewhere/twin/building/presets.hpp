@@ -15,7 +15,8 @@ struct PersonPath {
   std::vector<Eigen::Vector3d> points_m;
 };
 
-// A building as it is at each visit, the way of the camera through it and of those who walk about.
+// A building as it is at each visit, the way of the camera through it and of people that walk
+// about.
 struct World {
   std::vector<Building> visits;  // more than one where the route darkens
   Route route;

@@ -250,7 +250,7 @@ void Dresser::keep_free(const Place& middle, float width_m) {
                    .to_m = middle.along_m + 0.5F * width_m});
 }
 
-// The widest part that nobody keeps free.
+// The widest part that is not kept free.
 Dresser::Gap Dresser::without_kept(Gap gap) const {
   for (const Stretch& kept : kept_) {
     const bool is_same_wall = kept.wall.from_m == gap.wall.from_m &&

@@ -29,7 +29,7 @@ Draft draft_of(const Spec& spec, const Plan& plan, const VisitSetting& visit = {
 
 // What stands along one side of a space.
 enum class Use : std::uint8_t {
-  kNothing,  // whoever uses it adds the skirting, too
+  kNothing,  // the caller adds the skirting, too
   kBare,     // skirting only
   kPlain,    // boards, posters and the like
   kDoors,    // and doors with numbers

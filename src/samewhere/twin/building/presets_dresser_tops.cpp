@@ -58,7 +58,7 @@ float clear_of_ends(float wanted_m, float size_m, float room_m) {
 
 }  // namespace
 
-// What is alike to whoever walks below goes together: lamps, vents, signs.
+// Things that look alike from below go together: lamps, vents, signs.
 Dresser::CeilingDesign Dresser::ceiling_of(const Style& layout) {
   Draws draws(layout, kCeilingDraws);
   constexpr std::array<float, 4> kPitches_m = {2.4F, 1.8F, 3.2F, 4.0F};
@@ -122,7 +122,7 @@ std::vector<Dresser::TopEdge> Dresser::top_edges(int space, int side) const {
   return edges;
 }
 
-// Whether a wall of another space of the unit leaves here across this one, away from who sees it.
+// Whether a wall of another space of the unit leaves here across this one, away from the observer.
 bool Dresser::is_convex_corner(int space, const Eigen::Vector2f& at_m, const Wall& wall) const {
   const Eigen::Vector2f right = (wall.to_m - wall.from_m).normalized();
   const Eigen::Vector2f back(-right.y(), right.x());

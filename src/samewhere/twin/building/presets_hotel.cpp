@@ -74,7 +74,7 @@ void furnish_storey(Draft& draft, const Storey& storey, int floor) {
   const Wall lift = dresser.wall_of(storey.landing, 1);
   furnisher.add_lift_door({lift, 0.7F}, floor);
   dresser.add_skirting(lift, {{0.7F - kHalfLift_m, 0.7F + kHalfLift_m}});
-  // what stands out stands where nobody walks
+  // obstacles stand off the paths
   furnisher.add_plant(spot_before(end, 0.45F, 0.45F));
   furnisher.add_chair(spot_before(side, kBeforeLastDoor_m, 0.35F));
   furnisher.add_extinguisher(extinguisher);

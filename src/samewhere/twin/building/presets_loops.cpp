@@ -85,7 +85,7 @@ World office_loop(const Spec& spec) {
   dresser.furnish_lounge(outer_north, kNorth);
 
   World world{.visits = {std::move(draft.building)}};
-  world.route.look_aside_rad = 0.5;  // somebody who films what stands left and right
+  world.route.look_aside_rad = 0.5;  // a person that films both sides
   world.route.start_m = {-3.5, -4.0, 0.0};
   walk_around(world.route, {7.0, 4.0}, -3.5);
   walk(world.route, {{6.5, -4.0, 0.0}});

@@ -8,7 +8,7 @@
 namespace samewhere::twin {
 
 // Where a thing is and which way it looks. In its coordinates x runs to the right and y upwards, as
-// seen by who stands before it, and z out towards them.
+// seen from the front, and z out towards them.
 struct Stance {
   Eigen::Vector3f origin_m = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  // columns: right, up, out

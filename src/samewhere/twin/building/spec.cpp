@@ -134,7 +134,7 @@ std::string canonical_text(const Spec& spec) {
   for (const auto& [name, sensors] : kSensors) {
     if (spec.sensors == sensors) camera = name;
   }
-  // not named where nobody strays: texts, and what is kept under them, are older than the key
+  // not named without lateral offset: texts, and what is kept under them, are older than the key
   const std::string stray = spec.stray_m > 0.0 ? fmt::format("&stray={}", spec.stray_m) : "";
   return fmt::format("{}{}?seed={}&similarity={}&speed={}&people={}&camera={}{}", kScheme,
                      spec.preset, spec.seed, spec.similarity, spec.speed, spec.people, camera,

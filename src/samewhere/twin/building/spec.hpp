@@ -17,7 +17,7 @@ struct Spec {
   double similarity = 0.8;  // 0: every place has its own looks, 1: only wear and numbers differ
   double speed = 1.0;       // times the usual one of the preset
   int people = 0;           // walking about
-  double stray_m = 0.0;     // key `stray`: who walks leaves the middle of the way by up to this
+  double stray_m = 0.0;     // key `stray`: largest lateral offset from the middle of the way
   Sensors sensors = Sensors::kRgbd;  // key `camera`
 };
 

@@ -91,7 +91,7 @@ struct Rectangle {
   Eigen::Vector2f turns_rad = Eigen::Vector2f::Zero();
   Material material;
 
-  // Towards whoever sees it.
+  // Towards the observer.
   Eigen::Vector3f normal() const { return right.cross(up); }
   // `right_up_m`: right of and above the corner.
   Eigen::Vector3f at(const Eigen::Vector2f& right_up_m) const {

@@ -193,7 +193,7 @@ void write_euroc_folder(core::Source& source, const std::filesystem::path& folde
     add_frame(out, frame, lists);
   };
   write_each_frame(source, take);
-  // before the source's truth, of which they may be a part: who makes them tells how far they are
+  // before the source's truth, of which they may be a part: their source reports progress
   if (tables) write_tables(out, lists.stamps_s, tables());
   core::require(lists.rig != nullptr, "a source has at least one frame");
   const core::Truth known = source.truth();

@@ -60,7 +60,7 @@ void write_tum_folder(core::Source& source, const std::filesystem::path& folder,
   TumLists lists;
   const auto take = [&](const core::Frame& frame) { add_frame(out, frame, lists); };
   write_each_frame(source, take);
-  // before the source's truth, of which they may be a part: who makes them tells how far they are
+  // before the source's truth, of which they may be a part: their source reports progress
   if (tables) write_tables(out, lists.stamps_s, tables());
   const std::string name = source.info().name;
   const core::Truth known = source.truth();

@@ -121,7 +121,7 @@ TEST(Twin, TruthIsMadeOnceAndTellsWhatTheInertialUnitDoes) {
   }
 }
 
-TEST(Twin, WhoWatchesTheTruthMayEndIt) {
+TEST(Twin, TheTruthCanBeInterrupted) {
   const Walkthrough walk(parse_spec("twin:office-loop?seed=3"), {.num_frames = 3});
   const auto refuse = [](int /*num_judged*/, int /*num_pairs*/) {
     throw std::runtime_error("enough");

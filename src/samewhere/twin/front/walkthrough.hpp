@@ -62,7 +62,7 @@ class Walkthrough {
   std::vector<Visit> visits_;
   std::vector<Person> people_;
   std::vector<core::ImuSample> imu_;
-  mutable std::optional<WalkTruth> truth_;  // as soon as somebody has asked
+  mutable std::optional<WalkTruth> truth_;  // computed on first use
 };
 
 // truth() with a progress line on stderr. Throws core::Interrupted after Ctrl-C.

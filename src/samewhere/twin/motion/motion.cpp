@@ -9,7 +9,7 @@
 namespace samewhere::twin {
 namespace {
 
-constexpr double kStandingShare = 0.3;  // of looking around: nobody holds a camera quite still
+constexpr double kStandingShare = 0.3;  // of looking around: a hand-held camera is never still
 
 // Camera axes (x right, y down, z forward) in a world with z up.
 Eigen::Quaterniond level_rotation(double yaw_rad) {
@@ -161,7 +161,7 @@ Motion::Angles Motion::angles_at(double stamp_s) const {
   const auto shaken = [&](const Waves& look, const Waves& shake) {
     return looking * sum_at(look, stamp_s) + moving * sum_at(shake, stamp_s);
   };
-  // one swing in nine metres, of the place, not of the time; who comes back looks at the same wall
+  // one swing in nine metres, of the place, not of the time; the same wall is seen on the way back
   constexpr double kSwingX_rad_m = 0.7;
   constexpr double kSwingY_rad_m = 0.55;
   const Jet way = cos(carried[kDriveHeading]) + sin(carried[kDriveHeading]);

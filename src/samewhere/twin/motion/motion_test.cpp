@@ -226,7 +226,7 @@ TEST(Motion, AWalkerIsLevelAndLooksAheadIntoABend) {
   EXPECT_GT(mean_lead_rad, 0.3);
 }
 
-TEST(Motion, WhoLooksAsideSeesTheSameThingsEachTimeAndWalksNoOtherWay) {
+TEST(Motion, LookingAsideShowsTheSameThingsEachTimeOnTheSamePath) {
   Route route = route_along(Carrier::kWalker, {walk_to(12, 0), walk_to(12, 8)});
   const Motion ahead(route, 3);
   route.look_aside_rad = 0.8;
@@ -247,7 +247,7 @@ TEST(Motion, WhoLooksAsideSeesTheSameThingsEachTimeAndWalksNoOtherWay) {
   EXPECT_GT(most_rad, 0.7);
 }
 
-TEST(Motion, WhoLooksAsideSeesTheSameWallOnTheWayBack) {
+TEST(Motion, LookingAsideShowsTheSameWallOnTheWayBack) {
   Route route = route_along(Carrier::kRobot, {walk_to(12, 0), walk_to(0, 0)});
   route.look_aside_rad = 0.8;
   const Motion motion(route, 3);

@@ -11,7 +11,7 @@ namespace {
 constexpr double kRightOfPath_m = 0.42;
 constexpr double kSmoothing_m = 0.45;  // half the stretch over which corners are rounded
 
-// Points of the path moved to the right of whoever walks along them.
+// Points of the path moved to the right in walking direction.
 std::vector<Eigen::Vector3d> right_side(const std::vector<Eigen::Vector3d>& points_m) {
   std::vector<Eigen::Vector3d> moved_m;
   for (std::size_t i = 0; i < points_m.size(); ++i) {

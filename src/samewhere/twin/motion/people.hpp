@@ -10,7 +10,7 @@
 
 namespace samewhere::twin {
 
-// Somebody who walks to and fro along a path, on the right side of it.
+// A person that walks to and fro along a path, on the right side of it.
 class Person {
  public:
   // Points on the floor, at least two, metres. Looks, pace and where they are at 0 s follow from

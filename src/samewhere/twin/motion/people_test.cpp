@@ -48,8 +48,8 @@ TEST(People, StandOnTheFloorUprightAndOfAHumanSize) {
   }
 }
 
-// Surfaces look outwards: whoever looks at a person sees fronts.
-TEST(People, AreClosedToWhoLooksAtThem) {
+// Surfaces look outwards: from outside only fronts are visible.
+TEST(People, AreClosedSurfaces) {
   const Person person(kPath_m, 3);
   const auto rectangles = person.at(4.0);
   const RayScene rays(rectangles);

@@ -10,7 +10,7 @@ namespace {
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kLargestShare = kLargestWobble / 3.0;
 
-// Somebody holding a camera in front of the chest.
+// A person holding a camera in front of the chest.
 CameraShake walker_shake(core::Random& random) {
   const double step_hz = random.uniform(1.7, 1.95);
   const double phase_rad = random.uniform(0.0, 2.0 * kTurn_rad);  // left or right foot first

@@ -112,7 +112,8 @@ double room_in(const RayScene& rays, const Eigen::Vector3d& floor_m, double head
 }
 
 void step_aside(const Stray& stray, core::Random& random, Drive& drive) {
-  core::require(stray.most_m >= 0.0 && stray.room_m, "who strays knows how far there is room");
+  core::require(stray.most_m >= 0.0 && stray.room_m,
+                "a lateral offset needs the free room beside the path");
   constexpr double kWaves_per_m = 0.05;
   constexpr double kDecided = 2.0;  // nearer to either side than to the middle, mostly
   const Waves waves = random_waves(random, 1.0, kWaves_per_m);

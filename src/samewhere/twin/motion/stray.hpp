@@ -16,7 +16,8 @@ namespace samewhere::twin {
 // anything is nearer than an elbow: metres, not below 0.
 using Room = std::function<double(const Eigen::Vector3d& floor_m, double heading_rad)>;
 
-// How people leave the middle of their way, so that who comes back sees a place from beside.
+// Lateral offset of a walk from the middle of the way, so that a place is seen from another side
+// on the way back.
 struct Stray {
   double most_m = 0.0;  // to either side; 0: not at all
   Room room_m;          // asked only if most_m is above 0

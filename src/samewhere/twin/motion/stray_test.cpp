@@ -14,7 +14,7 @@
 namespace samewhere::twin {
 namespace {
 
-constexpr double kLeft_rad = 0.5 * kPi;  // of whoever looks along x
+constexpr double kLeft_rad = 0.5 * kPi;  // of a view along x
 
 Stray stray_where(double most_m, double room_m) {
   return {.most_m = most_m, .room_m = [=](const Eigen::Vector3d&, double) { return room_m; }};
@@ -58,7 +58,7 @@ TEST(RoomIn, ATableTopAHookAndAnEdgeAreInTheWay) {
               0.06);
 }
 
-TEST(Stray, WhereNobodyStraysTheMotionIsTheOneItWas) {
+TEST(Stray, WithoutOffsetTheMotionIsUnchanged) {
   EXPECT_EQ(largest_difference_m(Motion(there_and_back(), 3), Motion(there_and_back(), 3, {})),
             0.0);
   EXPECT_EQ(largest_difference_m(Motion(there_and_back(Carrier::kRobot), 3),
@@ -115,7 +115,7 @@ TEST(Stray, TheCameraMovesSmoothlyAndIsTurnedByNoMoreThanPromised) {
   }
 }
 
-TEST(Stray, WhoStraysKnowsHowFarThereIsRoom) {
+TEST(Stray, NeedsTheFreeRoomBesideThePath) {
   EXPECT_THROW(Motion(there_and_back(), 1, {.most_m = 1.0, .room_m = nullptr}),
                core::ContractError);
 }

@@ -242,7 +242,7 @@ std::optional<std::string> PictureCache::make_folder() const {
   const path key_file = folder_ / kKeyFile;
   const std::optional<std::string> found = read_if_there(key_file);
   if (found && *found == key_text_) return std::nullopt;
-  // nobody can tell what the pictures in it show
+  // the content of its images is unknown
   const int num_dropped = drop_pictures(folder_);
   if (const int error = replace_file(key_file, key_text_); error != 0) {
     throw core::InputError(
@@ -300,7 +300,7 @@ std::optional<std::string> PictureCache::store(int index, const Pictures& pictur
         index, place_->max_bytes / 1'000'000);
   }
   if (const int error = replace_file(file_of(index), content); error == ENOENT) {
-    // somebody has cleared the folder: it begins again with the next frame
+    // the folder was cleared: continues with the next frame
     try {
       make_folder();
     } catch (const core::InputError& refused) {

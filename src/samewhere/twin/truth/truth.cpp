@@ -261,7 +261,7 @@ WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const cor
 
 std::vector<core::FrameSpan> revisits_of(const std::vector<TrueLoop>& loops) {
   std::vector<core::FrameSpan> stays;
-  std::vector<core::FrameSpan> revisits;  // of these, who can be confirmed
+  std::vector<core::FrameSpan> revisits;  // of these, those that can be confirmed
   for (const TrueLoop& loop : loops) {
     if (!stays.empty() && loop.query <= stays.back().last + 1) {
       stays.back().last = loop.query;

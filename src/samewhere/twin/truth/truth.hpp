@@ -39,7 +39,7 @@ struct TrueLoop {
   std::string object;  // the name of that object, the one shown best; empty if there is none
 };
 
-// Two frames of different places (pr-v2) that look alike by construction: with the camera moved
+// Two frames of different places (pr-v2) that look the same by construction: with the camera moved
 // from its unit to another one of the same kind, the query would be the same place as the match.
 struct AliasedPair {
   int query = 0;  // frames of the walk; query > match
