@@ -57,16 +57,16 @@ TEST(Slam, FramesOfALongStayAreSavedThoughNoKeyframeComes) {
   };
   Slam slam(config, DepthFrom::kSensor, keep_map);
   std::optional<core::Frame> frame = twin::open_twin(config.source, config.twin)->next();
-  constexpr std::size_t kNumFrames = 70;
-  for (std::size_t i = 0; i < kNumFrames; ++i) {
+  constexpr std::size_t kFramesFed = 70;
+  for (std::size_t i = 0; i < kFramesFed; ++i) {
     frame->id = core::FrameId(i);
     frame->stamp_s = static_cast<double>(i) / 30.0;
     slam.feed(*frame);
   }
   EXPECT_GE(num_saved, 60U);
-  EXPECT_LT(num_saved, kNumFrames);
+  EXPECT_LT(num_saved, kFramesFed);
   slam.finish();
-  EXPECT_EQ(num_saved, kNumFrames);
+  EXPECT_EQ(num_saved, kFramesFed);
   EXPECT_EQ(slam.map().keyframes.size(), 1U);
 }
 
