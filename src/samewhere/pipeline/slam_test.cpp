@@ -3,6 +3,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
+#include <samewhere/input/rectify.hpp>
 #include <samewhere/pipeline/profiles.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/twin/front/twin.hpp>
@@ -186,7 +187,7 @@ TEST(Slam, TwoCamerasStartFromOneFrameAndGiveTheSameBitsInThreadsAndInTurn) {
   cv::setNumThreads(1);
   Config config = short_walk();
   config.source = "twin:office-loop?seed=5&camera=stereo";
-  const auto source = twin::open_twin(config.source, config.twin);
+  const auto source = input::rectified(twin::open_twin(config.source, config.twin));
   ASSERT_EQ(source->info().num_cameras, 2);
   ASSERT_FALSE(source->info().has_depth);
   Slam in_threads(config);
