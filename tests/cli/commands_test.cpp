@@ -187,7 +187,8 @@ TEST_F(Commands, LoopsSaysHowManyFramesMatchThatNoViewsInARowConfirm) {
       "retrieve.window_frames=2 --out ";
   const Outcome waiting = run(walk + quoted(path("waiting")));
   ASSERT_EQ(waiting.exit_code, 0) << waiting.err;
-  EXPECT_THAT(waiting.out, HasSubstr("5 frames match an earlier one, but no 12 consecutive views do"));
+  EXPECT_THAT(waiting.out,
+              HasSubstr("5 frames match an earlier one, but no 12 consecutive views do"));
   const Outcome alone = run(walk + quoted(path("alone")) + " --set verify.min_views=1");
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
   EXPECT_THAT(alone.out, Not(HasSubstr("consecutive views")));
