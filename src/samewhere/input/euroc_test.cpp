@@ -4,103 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <samewhere/core/random.hpp>
-#include <samewhere/input/csv_file.hpp>
-#include <samewhere/input/test_recording.hpp>
+#include <samewhere/input/test_euroc.hpp>
 
 namespace samewhere::input {
 namespace {
 
 using testing::AllOf;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr const char* kLeftSensor =
-    "# a camera\n"
-    "sensor_type: camera\n"
-    "T_BS:\n"
-    "  cols: 4\n"
-    "  rows: 4\n"
-    "  data: [0.0, -1.0, 0.0, -0.02,\n"
-    "         1.0, 0.0, 0.0, -0.06,\n"
-    "         0.0, 0.0, 1.0, 0.01,\n"
-    "         0.0, 0.0, 0.0, 1.0]\n"
-    "rate_hz: 20\n"
-    "resolution: [32, 24]\n"
-    "camera_model: pinhole\n"
-    "intrinsics: [30.5, 31.0, 15.5, 11.25] #fu, fv, cu, cv\n"
-    "distortion_model: radial-tangential\n"
-    "distortion_coefficients: [-0.28, 0.07, 1.9e-04, 1.76e-05]\n";
-
-std::string replaced(std::string text, const std::string& old, const std::string& now) {
-  const std::size_t at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return at == std::string::npos ? text : text.replace(at, old.size(), now);
-}
-
-// Two cameras, an inertial unit and truth, as in a EuRoC recording; three frames.
-class Euroc : public Open {
- protected:
-  Euroc() {
-    for (const char* name : kNames) {
-      write_grey(fmt::format("mav0/cam0/data/{}", name), 50);
-      write_grey(fmt::format("mav0/cam1/data/{}", name), 150);
-    }
-    const std::string list = fmt::format(
-        "#timestamp [ns],filename\r\n1403636579763555584,{}\r\n"
-        "1403636579813555456,{}\r\n1403636579863555584,{}\r\n",
-        kNames[0], kNames[1], kNames[2]);
-    folder_.write("mav0/cam0/data.csv", list);
-    folder_.write("mav0/cam1/data.csv", list);
-    folder_.write("mav0/cam0/sensor.yaml", kLeftSensor);
-    folder_.write("mav0/cam1/sensor.yaml",
-                  "%YAML:1.0\n---\n" + replaced(kLeftSensor, "-0.02,", "0.09,"));
-    folder_.write("mav0/imu0/sensor.yaml",
-                  "%YAML:1.0\n"
-                  "T_BS:\n  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1]\n"
-                  "gyroscope_noise_density: 1.6968e-04\naccelerometer_noise_density: 2.0e-3\n"
-                  "gyroscope_random_walk: 1.9393e-05\n");
-    write_imu_samples();
-    folder_.write("mav0/state_groundtruth_estimate0/data.csv",
-                  "#timestamp, p_RS_R_x [m], ...\n"
-                  "1403636579758555392,4.5,-1.75,0.75,0.5,-0.5,0.5,-0.5,0,0,0,0,0,0,0,0,0\n"
-                  "1403636579763555584,1,2,3,1,0,0,0,.1,-.2,.3,1e-3,2e-3,3e-3,.04,.05,-.06\n");
-  }
-
-  void write_grey(const std::string& name, int grey) const {
-    folder_.write_png(name, cv::Mat(24, 32, CV_8UC1, cv::Scalar(grey)));
-  }
-
-  // The sample after the last frame belongs to none; two coincide with frames.
-  void write_imu_samples() const {
-    std::string text = "#timestamp [ns],w_RS_S_x [rad s^-1],...\n";
-    for (const char* stamp : {"1403636579758555392", "1403636579763555584", "1403636579768555520",
-                              "1403636579813555456", "1403636579900000000"}) {
-      text += fmt::format("{},0.1,0.2,0.3,9.5,0.5,-0.5\n", stamp);
-    }
-    folder_.write("mav0/imu0/data.csv", text);
-  }
-
-  std::string complaint_with(const std::string& name, const std::string& content) {
-    const std::string before = core::read_file(folder_.at(name));
-    folder_.write(name, content);
-    const std::string said = complaint_on_opening();
-    folder_.write(name, before);
-    return said;
-  }
-
-  std::string said_with(const std::string& name, const std::string& content) {
-    const std::string before = core::read_file(folder_.at(name));
-    folder_.write(name, content);
-    std::string said = said_on_opening();
-    folder_.write(name, before);
-    return said;
-  }
-
-  static constexpr std::array<const char*, 3> kNames = {
-      "1403636579763555584.png", "1403636579813555456.png", "1403636579863555584.png"};
-};
 
 TEST_F(Euroc, BothCamerasTheInertialUnitAndTheTruthComeTogether) {
   const auto source = open();
@@ -339,94 +250,6 @@ TEST_F(Euroc, BrokenSamplesAndPosesAreLeftOutAndNamed) {
               AllOf(HasSubstr("line 2"), HasSubstr("found 16 values")));
   EXPECT_THAT(said_with(poses, "10,1,2,3,2,0,0,0\n"),
               AllOf(HasSubstr("line 1"), HasSubstr("norm 2")));
-}
-
-TEST_F(Euroc, ABrokenSensorFileIsNamedWithLineAndKey) {
-  const auto said = [this](const std::string& old, const std::string& now) {
-    return complaint_with("mav0/cam0/sensor.yaml", replaced(kLeftSensor, old, now));
-  };
-  EXPECT_THAT(said("resolution: [32, 24]", "resolution: [32]"),
-              AllOf(HasSubstr("cam0/sensor.yaml, line 11: resolution"), HasSubstr("1 values")));
-  EXPECT_THAT(said("[32, 24]", "[32, 24.5]"), HasSubstr("found 24.5"));
-  EXPECT_THAT(said("[32, 24]", "[32, 1e30]"), HasSubstr("pixels"));
-  EXPECT_THAT(said("[32, 24]", "[[[32, 24]]]"), HasSubstr("plain values"));
-  EXPECT_THAT(said("intrinsics", "intrinsic"), HasSubstr("has no intrinsics"));
-  EXPECT_THAT(said("[30.5", "[-30.5"), HasSubstr("fx = -30.5"));
-  EXPECT_THAT(said("15.5,", "155,"), AllOf(HasSubstr("centre (155, "), HasSubstr("outside")));
-  EXPECT_THAT(said("pinhole", "omni"), AllOf(HasSubstr("omni"), HasSubstr("pinhole")));
-  EXPECT_THAT(said("radial-tangential", "fov"), HasSubstr("radial-tangential"));
-  EXPECT_THAT(said("-0.28, ", ""), HasSubstr("3 distortion values"));
-  EXPECT_THAT(said("-0.28, ", "-1e9, "), HasSubstr("k1 = -1000000000"));
-  EXPECT_THAT(said("T_BS:", "T_XX:"), HasSubstr("has no T_BS"));
-  EXPECT_THAT(said("  data:", "  dat:"), HasSubstr("has no T_BS.data"));
-  EXPECT_THAT(said("[0.0, -1.0", "[0.0, -2.0"), HasSubstr("no rigid transform"));
-  EXPECT_THAT(said("[0.0, -1.0", "[inf, -1.0"), HasSubstr("'inf'"));
-  EXPECT_THAT(said("rate_hz: 20", "rate_hz: [20"), AllOf(HasSubstr("line"), HasSubstr("not YAML")));
-  EXPECT_THAT(complaint_with("mav0/cam0/sensor.yaml", "%YAML:1.0"), HasSubstr("sensor.yaml"));
-  EXPECT_THAT(complaint_with("mav0/cam0/sensor.yaml", ""), HasSubstr("sensor.yaml"));
-  const std::string imu = core::read_file(folder_.at("mav0/imu0/sensor.yaml"));
-  EXPECT_THAT(said_with("mav0/imu0/sensor.yaml", replaced(imu, "2.0e-3", "-1")),
-              AllOf(HasSubstr("accelerometer_noise_density"), HasSubstr("-1")));
-  EXPECT_THAT(said_with("mav0/imu0/sensor.yaml", replaced(imu, "1.9393e-05", "-2")),
-              AllOf(HasSubstr("gyroscope_random_walk"), HasSubstr("-2")));
-}
-
-TEST_F(Euroc, TheModelGoesByItsOtherNamesToo) {
-  for (const char* const name : {"radtan", "plumb_bob", "RadTan", "radial_tangential"}) {
-    folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "radial-tangential", name));
-    EXPECT_EQ(std::get<core::PinholeRadtan>(open()->next()->rig->cameras[0]).k1, -0.28) << name;
-  }
-  folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "pinhole", "Pinhole"));
-  EXPECT_EQ(complaint_on_opening(), "no error");
-  std::string bare = replaced(kLeftSensor, "distortion_model", "model_of_old");
-  bare = replaced(bare, "distortion_coefficients", "coefficients_of_old");
-  folder_.write("mav0/cam0/sensor.yaml", bare);
-  EXPECT_EQ(std::get<core::PinholeRadtan>(open()->next()->rig->cameras[0]).k1, 0.0);
-}
-
-TEST_F(Euroc, AnEquidistantCameraIsAFisheye) {
-  folder_.write("mav0/cam0/sensor.yaml", replaced(kLeftSensor, "radial-tangential", "equidistant"));
-  const core::Camera camera = open()->next()->rig->cameras[0];
-  EXPECT_EQ(std::get<core::KannalaBrandt>(camera).k1, -0.28);
-}
-
-TEST_F(Euroc, DamagedSensorFilesNeverCrash) {
-  const std::string good = kLeftSensor;
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    core::Random random(seed);
-    std::string text = good.substr(0, random.index(good.size() + 1));
-    for (int i = 0; i < 4 && !text.empty(); ++i) {
-      text[random.index(text.size())] = static_cast<char>(random.index(256));
-    }
-    SCOPED_TRACE(fmt::format("seed {}", seed));
-    const std::string said = complaint_with("mav0/cam0/sensor.yaml", text);
-    EXPECT_THAT(said, testing::AnyOf("no error", HasSubstr("mav0/cam0/")));
-  }
-}
-
-TEST_F(Euroc, APictureOfAnotherSizeThanTheCalibrationIsNamed) {
-  folder_.write("mav0/cam1/sensor.yaml", replaced(kLeftSensor, "[32, 24]", "[64, 48]"));
-  EXPECT_THAT(complaint_on_opening(), AllOf(HasSubstr("mav0/cam1/data"), HasSubstr("32 x 24"),
-                                            HasSubstr("calibrated for 64 x 48")));
-}
-
-TEST_F(Euroc, ACameraFileOfTheUserReplacesCamera0WhereItSits) {
-  folder_.write("mine.txt", kCamera);
-  config_.camera = folder_.at("mine.txt").string();
-  const core::Rig rig = *open()->next()->rig;
-  ASSERT_EQ(rig.cameras.size(), 2U);
-  EXPECT_EQ(std::get<core::PinholeRadtan>(rig.cameras[0]).fx_px, 30.0);
-  EXPECT_EQ(std::get<core::PinholeRadtan>(rig.cameras[1]).fx_px, 30.5);
-  EXPECT_EQ(rig.body_from_camera[0].translation.x(), -0.02);
-}
-
-TEST_F(Open, CsvWordsAreCutAtCommasAndTrimmed) {
-  folder_.write("a.csv", "#x,y\r\n\r\n 1 ,two words,\t3\r\n,\n");
-  const auto lines = read_csv_lines(folder_.at("a.csv"));
-  ASSERT_EQ(lines.size(), 2U);
-  EXPECT_THAT(lines[0].words, ElementsAre("1", "two words", "3"));
-  EXPECT_THAT(lines[0].place, testing::EndsWith("a.csv, line 3"));
-  EXPECT_THAT(lines[1].words, ElementsAre(""));
 }
 
 }  // namespace
