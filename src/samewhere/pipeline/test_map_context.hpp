@@ -7,7 +7,7 @@
 namespace samewhere::pipeline {
 
 // A made-up map, for tests only: no odometry and no landmarks.
-class TestMap final : public verify::MapContext {
+class TestMap final : public verify::WithoutMap {
  public:
   std::function<bool(core::FrameId)> connected = [](core::FrameId /*match*/) { return false; };
   std::function<bool(core::FrameId, core::FrameId)> one_place;  // none: the map has no places
@@ -16,18 +16,6 @@ class TestMap final : public verify::MapContext {
   bool is_connected(core::FrameId match) const override { return connected(match); }
   bool has_places() const override { return one_place != nullptr; }
   bool are_one_place(core::FrameId a, core::FrameId b) const override { return one_place(a, b); }
-  std::optional<verify::CandidateViews> views_with_landmark_depths(
-      const core::Candidate& /*candidate*/) const override {
-    return std::nullopt;
-  }
-  std::optional<core::OdometryEvidence> measure_odometry(
-      const core::Candidate& /*candidate*/, const core::Sim3& /*match_from_query*/) const override {
-    return std::nullopt;
-  }
-  std::optional<core::CompetingLoopEvidence> measure_competing_loop(
-      const core::Candidate& /*candidate*/, const core::Sim3& /*match_from_query*/) const override {
-    return std::nullopt;
-  }
   std::optional<core::CompetingPlaceEvidence> measure_competing_place(
       const core::LedgerRow& /*row*/, const core::LedgerRow& other) const override {
     if (!is_every_match_a_place) return std::nullopt;

@@ -49,7 +49,7 @@ class MapContext {
 };
 
 // Recognition alone, and relocalization: no odometry, no places, no landmarks.
-class WithoutMap final : public MapContext {
+class WithoutMap : public MapContext {
  public:
   bool is_connected(core::FrameId /*match*/) const override { return false; }
   bool has_places() const override { return false; }
