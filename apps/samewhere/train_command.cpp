@@ -96,8 +96,7 @@ void add_words_command(CLI::App& train) {
 void add_train_command(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "train",
-      "Train the network that describes a view (samewhere train --help), or, with `pairs`, "
-      "the one that judges pairs of views");
+      "Train the network that describes an image; with `words`, a vocabulary of visual words");
   // all that follows is for the training program, --help too; but for the words, which need none
   sub->set_help_flag();
   sub->prefix_command();

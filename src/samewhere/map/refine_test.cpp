@@ -334,7 +334,7 @@ TEST(Cull, OfManyKeyframesOfOneViewOneGoesButNeverTheFirstOrOneOfALoop) {
   const auto culled = cull_around(map, newest(map).id, {}, {}).culled_keyframes;
   ASSERT_EQ(culled.size(), 1U);
   EXPECT_GT(culled[0], core::KeyframeId(0));
-  EXPECT_LT(culled[0], core::KeyframeId(4)) << "the latest are not judged yet";
+  EXPECT_LT(culled[0], core::KeyframeId(4)) << "the latest are not tested yet";
   for (std::uint64_t i = 1; i < 4; ++i)
     map.loops.push_back({newest(map).id, core::KeyframeId(i), {}});
   EXPECT_TRUE(cull_around(map, newest(map).id, {}, {}).culled_keyframes.empty());
@@ -348,8 +348,8 @@ TEST(Cull, AKeyframeThatShowsWhatOthersDoNotStays) {
     const features::View view = features::test_view(world, i, turned);
     map = apply(map, add_keyframe(map, test_tracked(map, view, turned, kNone)));
   }
-  const Config judging_all{.cull_after_keyframes = 1};
-  EXPECT_TRUE(cull_around(map, newest(map).id, judging_all, {}).culled_keyframes.empty());
+  const Config testing_all{.cull_after_keyframes = 1};
+  EXPECT_TRUE(cull_around(map, newest(map).id, testing_all, {}).culled_keyframes.empty());
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ bool Mapping::correct(const AcceptedLoop& heard) {
   if (!loop) return false;  // both hang on one: nothing to correct
   const Correction correction = with_loop(map_, *loop, config_, heard.overruled);
   const correct::Closing& closing = correction.closing;
-  think_again(closing, *loop);
+  record_changes(closing, *loop);
   map_ = correction.map;
   if (!closing.accepted.empty()) full_bundles_.note_correction(map_);
   if (!closing.withdrawn.empty()) withdrawn_at_ = map_.number;
@@ -178,7 +178,7 @@ std::optional<AcceptedLoop> Mapping::reverified(AcceptedLoop heard) {
   return heard;
 }
 
-void Mapping::think_again(const correct::Closing& closing, const scene::LoopEdge& newest) {
+void Mapping::record_changes(const correct::Closing& closing, const scene::LoopEdge& newest) {
   if (closing.rejected)
     reject(closing.rejected->loop, core::Refusal::kGraph, bent_by(*closing.rejected, config_));
   for (const auto& bent : closing.withdrawn) {
@@ -210,7 +210,7 @@ void Mapping::accept_again(const scene::LoopEdge& loop) {
 
 void Mapping::add_row(const core::LedgerRow& row) {
   news_.rows.push_back(row);
-  second_thoughts_.push_back(row);
+  later_verdicts_.push_back(row);
 }
 
 void Mapping::add_frames(const std::vector<core::FramePose>& frames) {
@@ -230,8 +230,8 @@ void Mapping::apply(scene::Edit edit) {
   map_ = scene::apply(std::move(map_), edit);
 }
 
-// What fusing, bundles and the judge of loops have looked at since comes back, and goes again at
-// the next round.
+// Features that fusion, bundle adjustment or loop verification have read since return to memory,
+// and leave it at the next round.
 void Mapping::let_old_leave_memory() {
   const auto num_kept = static_cast<std::size_t>(config_.map.keyframes_in_memory);
   landmark_pages_.step(map_.landmarks, num_kept);

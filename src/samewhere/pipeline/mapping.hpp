@@ -24,12 +24,12 @@ class Mapping {
   Mapping(const Mapping&) = delete;
   Mapping& operator=(const Mapping&) = delete;
 
-  // Does what a message of tracking asks for, and goes on to better the map after the answer.
+  // Does what a message of tracking asks for, and refines the map after the answer.
   void take(const ToMapping& message, const MappingLink::Reply& reply);
 
   const scene::MapVersion& map() const { return map_; }
-  // Second thoughts about loops that the judge accepted, in the order of the judgements.
-  const core::Ledger& second_thoughts() const { return second_thoughts_; }
+  // Later verdicts of the pose graph on accepted loops, in the order of time.
+  const core::Ledger& later_verdicts() const { return later_verdicts_; }
   const core::Timings& timings() const { return timings_; }
 
  private:
@@ -55,8 +55,8 @@ class Mapping {
   bool correct(const AcceptedLoop& heard);
   // The same loop, if it is one still: it was accepted on a map with other accepted loops.
   std::optional<AcceptedLoop> reverified(AcceptedLoop heard);
-  // What the pose graph makes of the judge's verdicts goes into the ledger, too.
-  void think_again(const correct::Closing& closing, const scene::LoopEdge& newest);
+  // Verdicts of the pose graph on accepted loops, for the ledger.
+  void record_changes(const correct::Closing& closing, const scene::LoopEdge& newest);
   void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);
   void accept_again(const scene::LoopEdge& loop);
   void add_row(const core::LedgerRow& row);
@@ -77,8 +77,8 @@ class Mapping {
   std::uint64_t withdrawn_at_ = 0;  // MapVersion::number when a loop was withdrawn last
   int num_unheard_ = 0;             // questions to loop closing whose answers are to come
   MapNews news_;                    // since the map was kept
-  std::map<core::CandidateId, core::LedgerRow> accepted_;  // by the judge, in this session
-  core::Ledger second_thoughts_;
+  std::map<core::CandidateId, core::LedgerRow> accepted_;  // by the loop verifier, in this session
+  core::Ledger later_verdicts_;
 };
 
 }  // namespace samewhere::pipeline

@@ -102,10 +102,10 @@ struct AcceptedLoop {
 
 struct LoopAnswer {
   std::vector<AcceptedLoop> loops;
-  std::uint64_t map_number = 0;                // MapVersion::number that they were judged on
+  std::uint64_t map_number = 0;                // MapVersion::number that they were verified on
   std::vector<Place> places;                   // to FindPlace
   std::optional<core::Descriptor> descriptor;  // of a view that is remembered from now on
-  core::Ledger rows;                           // of all candidates that were judged
+  core::Ledger rows;                           // of all verified candidates
   std::optional<scene::Thumbnail> thumbnail;   // of the keyframe
 };
 

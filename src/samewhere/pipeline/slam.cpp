@@ -59,7 +59,7 @@ void Slam::finish() {
   tracking_.finish();
   stages_.finish();
   ledger_ = stages_.loop_closing().ledger();
-  const core::Ledger& changes = stages_.mapping().second_thoughts();
+  const core::Ledger& changes = stages_.mapping().later_verdicts();
   ledger_.insert(ledger_.end(), changes.begin(), changes.end());
   is_broken_ = false;
   is_finished_ = true;

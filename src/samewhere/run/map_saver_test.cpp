@@ -105,7 +105,7 @@ TEST(MapHeader, EverySettingOfTheFeaturesMakesItAnother) {
   pipeline::Config config;
   ++config.verify.min_inliers;
   EXPECT_EQ(differences(header, map_header(config, rig, kChecksum)), Names{})
-      << "how loops are judged may change";
+      << "settings of the verification may change";
 }
 
 TEST(MapHeader, AnotherNetworkOrAnotherSettingOfTheDescriberMakesItAnother) {

@@ -22,11 +22,11 @@ struct OverriddenMap {
 OverriddenMap with_rejected(const scene::MapVersion& map, const core::LedgerRow& row,
                             const pipeline::Config& config);
 
-// The map with the loop that the judge refused: by its relative pose as it was measured, poses
-// solved, places fused, all of it bundled. The graph of odometry and loops is still asked. Throws
+// The map with the loop that the verifier rejected: by its measured relative pose, with pose graph
+// optimization, fusion and full bundle adjustment. The robust pose graph still decides. Throws
 // InputError if the candidate is a loop already, was taken for a lost view, has no relative pose,
-// or has one between views or in lengths that the map has no more; and if the graph does not go
-// with it. `ledger`: of the run, to tell what is known of other loops.
+// or has one between views or in lengths that the map has no more; and if the graph rejects
+// it. `ledger`: of the run, to tell what is known of other loops.
 OverriddenMap with_forced(const scene::MapVersion& map, const core::LedgerRow& row,
                           const core::Ledger& ledger, const pipeline::Config& config);
 

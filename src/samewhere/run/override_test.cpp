@@ -27,7 +27,7 @@ namespace {
 using scene::MapVersion;
 using testing::HasSubstr;
 
-// What the judge may have said of candidates for loops in the two rooms.
+// Verdicts on loop candidates in the two rooms.
 class OverrideInRooms : public pipeline::LookAlikeRooms {
  protected:
   static core::LedgerRow row_of(const scene::LoopEdge& loop, std::size_t id) {

@@ -85,7 +85,7 @@ TEST_F(Relocalizations, InItsCopyWhichIsWrong) {
 }
 
 // The place was told of an earlier view, and this one only of the right one.
-TEST_F(Relocalizations, WhereHeIsCountsAndNotWhatTheJudgeSays) {
+TEST_F(Relocalizations, ThePoseCountsAndNotTheVerdict) {
   recognised(12, 0, 2.0);
   const SlamEvaluation evaluation = evaluated_if_found_at(7.0);
   EXPECT_EQ(figure(evaluation, kFound), "0 / 1 / 0");

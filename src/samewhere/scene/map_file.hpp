@@ -28,7 +28,7 @@ struct MapExtras {
   std::vector<core::FramePose> frames;  // to derive a trajectory from
   std::vector<core::Descriptor>
       descriptors;                    // of keyframes' views: the place index is made of them
-  std::vector<std::string> ledger;    // judged candidates, each as one line of JSON
+  std::vector<std::string> ledger;    // verified candidates, each as one line of JSON
   std::vector<Thumbnail> thumbnails;  // of keyframes; to be written alone: see thumbnail()
 };
 
@@ -72,7 +72,7 @@ class MapFile {
   // (map_check.hpp). Throws InputError naming what is damaged or missing.
   StoredMap load();
 
-  // The judged candidates alone, as StoredMap has them.
+  // The verified candidates alone, as StoredMap has them.
   std::vector<std::string> ledger();
 
   // The picture of the frame, if there is one. Throws InputError if it is damaged.

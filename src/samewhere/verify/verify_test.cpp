@@ -202,7 +202,7 @@ TEST(Decide, AfterALoopDetectionPausesForTenFramesAndResumesAtTheEleventh) {
   EXPECT_EQ(after(10), "pause");
   EXPECT_EQ(after(11), "accepted");
   EXPECT_EQ(stage(good_evidence(), {.pause_frames = 0}, {core::FrameId(100)}), "accepted")
-      << "without a pause every match is judged for itself";
+      << "without a pause every match is decided by itself";
 }
 
 TEST(Decide, WhereGeometryIsNotRequiredALoopWithoutAGoodPoseIsCountedButHasNone) {

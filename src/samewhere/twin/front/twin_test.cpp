@@ -123,13 +123,13 @@ TEST(Twin, TruthIsMadeOnceAndTellsWhatTheInertialUnitDoes) {
 
 TEST(Twin, TheTruthCanBeInterrupted) {
   const Walkthrough walk(parse_spec("twin:office-loop?seed=3"), {.num_frames = 3});
-  const auto refuse = [](int /*num_judged*/, int /*num_pairs*/) {
+  const auto refuse = [](int /*num_labelled*/, int /*num_pairs*/) {
     throw std::runtime_error("enough");
   };
   EXPECT_THROW(walk.truth(refuse), std::runtime_error);
   std::vector<std::pair<int, int>> heard;
-  const WalkTruth& truth =
-      walk.truth([&](int num_judged, int num_pairs) { heard.emplace_back(num_judged, num_pairs); });
+  const WalkTruth& truth = walk.truth(
+      [&](int num_labelled, int num_pairs) { heard.emplace_back(num_labelled, num_pairs); });
   EXPECT_EQ(heard, (std::vector<std::pair<int, int>>{{1, 6}, {3, 6}, {6, 6}}));
   EXPECT_EQ(truth.frames.size(), 3U);
   const Walkthrough other(parse_spec("twin:office-loop?seed=3"), {.num_frames = 3});

@@ -122,16 +122,16 @@ std::vector<core::InertialTruth> Walkthrough::inertial_truth() const {
                               stamps_s);
 }
 
-const WalkTruth& Walkthrough::truth(const WatchJudging& watch) const {
+const WalkTruth& Walkthrough::truth(const WatchPairs& watch) const {
   if (!truth_) truth_ = truth_of(walk_, visits_, rig_->cameras.front(), watch);
   return *truth_;
 }
 
 const WalkTruth& watched_truth(const Walkthrough& walk) {
   std::optional<core::Progress> progress;
-  return walk.truth([&](int num_judged, int num_pairs) {
-    if (!progress) progress.emplace("pairs of frames judged", num_pairs);
-    progress->update(num_judged);
+  return walk.truth([&](int num_labelled, int num_pairs) {
+    if (!progress) progress.emplace("pairs of frames labelled", num_pairs);
+    progress->update(num_labelled);
     core::stop_if_interrupted();
   });
 }

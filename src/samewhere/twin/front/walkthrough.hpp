@@ -46,7 +46,7 @@ class Walkthrough {
   std::vector<core::InertialTruth> inertial_truth() const;
   // Exact. The first call takes some seconds, later ones none; from one thread. What `watch` throws
   // comes out, and nothing is kept.
-  const WalkTruth& truth(const WatchJudging& watch = nullptr) const;
+  const WalkTruth& truth(const WatchPairs& watch = nullptr) const;
 
  private:
   // Measured since the frame before, that frame's own moment excluded; of frame 0 the first sample.

@@ -56,8 +56,8 @@ std::vector<FrameTruth> frames_of(const Walk& walk, const std::vector<Visit>& vi
   return frames;
 }
 
-// One judged frame of the walk.
-struct Judged {
+// One frame of the walk with what it shows.
+struct SeenFrame {
   int frame = 0;  // of the walk
   double stamp_s = 0.0;
   FrameTruth where;
@@ -74,7 +74,8 @@ struct Shares {
   double larger() const { return std::max(query_by_match, match_by_query); }
 };
 
-core::PlaceTruth place_truth(const Shares& overlap, const Judged& query, const Judged& match) {
+core::PlaceTruth place_truth(const Shares& overlap, const SeenFrame& query,
+                             const SeenFrame& match) {
   if (overlap.larger() < kMaxDifferent) return core::PlaceTruth::kDifferent;
   const bool is_same = overlap.smaller() >= kMinSame &&
                        look_the_same_way(query.sight.viewpoint, match.sight.viewpoint);
@@ -116,25 +117,24 @@ std::vector<Kin> kin_of(int unit, const Building& here, const Building& there) {
   return kin;
 }
 
-class Judge {
+class PairLabeler {
  public:
-  Judge(const std::vector<Visit>& visits, const core::Camera& camera)
+  PairLabeler(const std::vector<Visit>& visits, const core::Camera& camera)
       : visits_(visits), camera_(camera), eye_(camera), objects_(visits) {}
 
-  Judged look(const core::StampedPose& pose, int frame, const FrameTruth& where) const {
-    Judged judged{.frame = frame, .stamp_s = pose.stamp_s, .where = where};
-    if (where.visit == kDark) return judged;
-    judged.sight =
-        eye_.look(pose.world_from_camera, visits_[static_cast<std::size_t>(where.visit)]);
-    judged.shown = objects_.shown_to(camera_, pose.world_from_camera, where.visit);
-    return judged;
+  SeenFrame look(const core::StampedPose& pose, int frame, const FrameTruth& where) const {
+    SeenFrame seen{.frame = frame, .stamp_s = pose.stamp_s, .where = where};
+    if (where.visit == kDark) return seen;
+    seen.sight = eye_.look(pose.world_from_camera, visits_[static_cast<std::size_t>(where.visit)]);
+    seen.shown = objects_.shown_to(camera_, pose.world_from_camera, where.visit);
+    return seen;
   }
 
-  Shares overlap(const Judged& query, const Judged& match) const {
+  Shares overlap(const SeenFrame& query, const SeenFrame& match) const {
     return {eye_.overlap(query.sight, match.sight), eye_.overlap(match.sight, query.sight)};
   }
 
-  TrueLoop loop(const Judged& query, const Judged& match, double overlap) const {
+  TrueLoop loop(const SeenFrame& query, const SeenFrame& match, double overlap) const {
     TrueLoop loop{.query = query.frame, .match = match.frame, .overlap = overlap};
     const std::optional<int> object = best_shared(query.shown, match.shown);
     if (object) loop.object = objects_.name(*object);
@@ -143,18 +143,18 @@ class Judge {
   }
 
   // For each visit, the kin of the unit that the frame was taken in.
-  std::vector<std::vector<Kin>> kin_by_visit(const Judged& judged) const {
+  std::vector<std::vector<Kin>> kin_by_visit(const SeenFrame& seen) const {
     std::vector<std::vector<Kin>> kin;
     for (const Visit& visit : visits_) {
-      kin.push_back(judged.sight.building == nullptr
+      kin.push_back(seen.sight.building == nullptr
                         ? std::vector<Kin>()
-                        : kin_of(judged.where.unit, *judged.sight.building, *visit.building));
+                        : kin_of(seen.where.unit, *seen.sight.building, *visit.building));
     }
     return kin;
   }
 
   // How alike they are with the query moved to the best of its unit's kin; 0 if they are not.
-  double alike(const Judged& query, const Judged& match, const std::vector<Kin>& kin) const {
+  double alike(const SeenFrame& query, const SeenFrame& match, const std::vector<Kin>& kin) const {
     constexpr float kMaxApart_m = 3.0F;
     double best = 0.0;
     for (const Kin& twin : kin) {
@@ -202,30 +202,30 @@ void write_pair(const core::FramePair& pair, const Shares& overlap, core::PlaceT
 }
 
 // Writes down whether a pair is a loop or an aliased pair; `kin` are those of the query, by visit.
-void register_pair(const Judge& judge, const Judged& query, const Judged& match,
+void register_pair(const PairLabeler& labeler, const SeenFrame& query, const SeenFrame& match,
                    const std::vector<std::vector<Kin>>& kin, WalkTruth& truth) {
-  const Shares overlap = judge.overlap(query, match);
+  const Shares overlap = labeler.overlap(query, match);
   const core::PlaceTruth place = place_truth(overlap, query, match);
   if (truth.places) write_pair({query.frame, match.frame}, overlap, place, truth);
   if (place == core::PlaceTruth::kSame && query.stamp_s - match.stamp_s >= kMinLoop_s) {
-    truth.loops.push_back(judge.loop(query, match, overlap.smaller()));
+    truth.loops.push_back(labeler.loop(query, match, overlap.smaller()));
   }
   if (place == core::PlaceTruth::kDifferent && match.where.visit != kDark) {
     const double alike =
-        judge.alike(query, match, kin[static_cast<std::size_t>(match.where.visit)]);
+        labeler.alike(query, match, kin[static_cast<std::size_t>(match.where.visit)]);
     if (alike > 0.0) truth.aliased_pairs.push_back({query.frame, match.frame, alike});
   }
 }
 
-void judge_pairs(const Judge& judge, const std::vector<Judged>& frames, const WatchJudging& watch,
-                 WalkTruth& truth) {
+void label_pairs(const PairLabeler& labeler, const std::vector<SeenFrame>& frames,
+                 const WatchPairs& watch, WalkTruth& truth) {
   const auto num_pairs = [](std::size_t num_frames) {
     return static_cast<int>(num_frames * (num_frames + 1) / 2);
   };
   for (std::size_t query = 0; query < frames.size(); ++query) {
-    const std::vector<std::vector<Kin>> kin = judge.kin_by_visit(frames[query]);
+    const std::vector<std::vector<Kin>> kin = labeler.kin_by_visit(frames[query]);
     for (std::size_t match = 0; match <= query; ++match) {
-      register_pair(judge, frames[query], frames[match], kin, truth);
+      register_pair(labeler, frames[query], frames[match], kin, truth);
     }
     if (watch) watch(num_pairs(query + 1), num_pairs(frames.size()));
   }
@@ -242,20 +242,20 @@ void check(const Walk& walk, const std::vector<Visit>& visits) {
 }  // namespace
 
 WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera,
-                   const WatchJudging& watch) {
+                   const WatchPairs& watch) {
   check(walk, visits);
   WalkTruth truth{.frames = frames_of(walk, visits)};
   const bool is_long = walk.poses.size() > static_cast<std::size_t>(kMaxFramesOfMatrix);
   truth.stride_frames = is_long ? kStrideOfLongWalks_frames : 1;
   if (!is_long) make_room_for_matrices(truth);
 
-  const Judge judge(visits, camera);
-  std::vector<Judged> frames;
+  const PairLabeler labeler(visits, camera);
+  std::vector<SeenFrame> frames;
   for (std::size_t i = 0; i < walk.poses.size();
        i += static_cast<std::size_t>(truth.stride_frames)) {
-    frames.push_back(judge.look(walk.poses[i], static_cast<int>(i), truth.frames[i]));
+    frames.push_back(labeler.look(walk.poses[i], static_cast<int>(i), truth.frames[i]));
   }
-  judge_pairs(judge, frames, watch, truth);
+  label_pairs(labeler, frames, watch, truth);
   return truth;
 }
 

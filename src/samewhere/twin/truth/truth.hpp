@@ -63,8 +63,8 @@ struct WalkTruth {
 // Longer walks are long: a matrix over all their frames would be too large.
 inline constexpr int kMaxFramesOfMatrix = 3000;
 
-// Hears how many pairs of frames of how many are judged; what it throws ends the judging.
-using WatchJudging = std::function<void(int num_judged, int num_pairs)>;
+// Progress: pairs of frames that are labelled, of all; an exception ends the work.
+using WatchPairs = std::function<void(int num_labelled, int num_pairs)>;
 
 // The truth of a walk from the exact geometry of the building (docs/evaluation.md, pr-v2; Eye):
 // same place: overlap at least 0.3 both ways and viewing directions within 45 degrees; different:
@@ -73,7 +73,7 @@ using WatchJudging = std::function<void(int num_judged, int num_pairs)>;
 // their units alike. Of a walk of more than kMaxFramesOfMatrix frames there are no matrices, and
 // loops and aliased pairs are sought among every 15th frame only.
 WalkTruth truth_of(const Walk& walk, const std::vector<Visit>& visits, const core::Camera& camera,
-                   const WatchJudging& watch = nullptr);
+                   const WatchPairs& watch = nullptr);
 
 // Frames one after another that all are queries of true loops, of which at least one is
 // confirmable: ascending. `loops` as in WalkTruth, of every frame.
