@@ -191,7 +191,7 @@ StoredMap MapFile::Content::load() {
     stored.map.landmarks.push_back(checked_value_of<Landmark>(row));
   });
   read_loops(kLoop, state_.num_loops, stored.map.loops);
-  read_loops(is_current() ? kSuspendedLoop : kSuspendedLoopBefore7, state_.num_suspended_loops,
+  read_loops(suspended_loops_table(file_.version()), state_.num_suspended_loops,
              stored.map.suspended_loops);
   file_.read_list(kMerge, state_.num_merges, [&](const RowFile::Row& row) {
     stored.map.merges.push_back(value_of<Merge>(row));

@@ -2,6 +2,7 @@
 
 // The tables of a map file, and its one row of counts.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -11,37 +12,46 @@
 
 namespace samewhere::scene {
 
-inline constexpr char kHeader[] = "header";
-inline constexpr char kState[] = "state";
-inline constexpr char kRig[] = "rig";
-inline constexpr char kKeyframe[] = "keyframe";
-inline constexpr char kView[] = "view";    // of keyframes, same numbers; never changes
-inline constexpr char kSlots[] = "slots";  // of keyframes, same numbers
-inline constexpr char kLandmark[] = "landmark";
-inline constexpr char kLoop[] = "loop";
-inline constexpr char kSuspendedLoop[] = "suspended_loop";
-inline constexpr char kSuspendedLoopBefore7[] = "doubted_loop";  // its name in version 6
-inline constexpr char kMerge[] = "merge";
-inline constexpr char kFrame[] = "frame";            // number: the frame's id
-inline constexpr char kDescriptor[] = "descriptor";  // number: the frame's id
-inline constexpr char kLedger[] = "ledger";          // bytes: a line of JSON
-inline constexpr char kThumbnail[] = "thumbnail";    // number: the frame's id; bytes: JPEG
-inline constexpr const char* kTables[] = {kHeader, kState,      kRig,    kKeyframe,      kView,
-                                          kSlots,  kLandmark,   kLoop,   kSuspendedLoop, kMerge,
-                                          kFrame,  kDescriptor, kLedger, kThumbnail};
-
-inline constexpr const char* kTablesBefore7[] = {kHeader,   kState,    kRig,
-                                                 kKeyframe, kView,     kSlots,
-                                                 kLandmark, kLoop,     kSuspendedLoopBefore7,
-                                                 kMerge,    kFrame,    kDescriptor,
-                                                 kLedger,   kThumbnail};
+inline constexpr const char* kHeader = "header";
+inline constexpr const char* kState = "state";
+inline constexpr const char* kRig = "rig";
+inline constexpr const char* kKeyframe = "keyframe";
+inline constexpr const char* kView = "view";    // of keyframes, same numbers; never changes
+inline constexpr const char* kSlots = "slots";  // of keyframes, same numbers
+inline constexpr const char* kLandmark = "landmark";
+inline constexpr const char* kLoop = "loop";
+inline constexpr const char* kSuspendedLoop = "suspended_loop";
+inline constexpr const char* kSuspendedLoopBefore7 = "doubted_loop";  // its name in version 6
+inline constexpr const char* kMerge = "merge";
+inline constexpr const char* kFrame = "frame";            // number: the frame's id
+inline constexpr const char* kDescriptor = "descriptor";  // number: the frame's id
+inline constexpr const char* kLedger = "ledger";          // bytes: a line of JSON
+inline constexpr const char* kThumbnail = "thumbnail";    // number: the frame's id; bytes: JPEG
+inline constexpr std::array kTables = {kHeader, kState,      kRig,    kKeyframe,      kView,
+                                       kSlots,  kLandmark,   kLoop,   kSuspendedLoop, kMerge,
+                                       kFrame,  kDescriptor, kLedger, kThumbnail};
+inline constexpr auto kTablesBefore7 = [] {
+  auto tables = kTables;
+  for (const char*& table : tables)
+    if (table == kSuspendedLoop) table = kSuspendedLoopBefore7;
+  return tables;
+}();
 
 // 5: thumbnails. 6: cameras of maps are pinholes. 7: table suspended_loop.
 inline constexpr std::int64_t kMapFileVersion = 7;
-inline constexpr FileKind kMapKindBefore7{"samewhere map", 0x534d5748 /* "SMWH" */, 6,
-                                          kTablesBefore7};
-inline constexpr FileKind kMapKind{"samewhere map", 0x534d5748, kMapFileVersion, kTables,
-                                   &kMapKindBefore7};
+inline constexpr std::int64_t kMapMagic = 0x534d5748;  // "SMWH"
+inline constexpr FileKind kMapKindBefore7{"samewhere map", kMapMagic, 6, kTablesBefore7};
+inline constexpr FileKind kMapKind{.name = "samewhere map",
+                                   .magic = kMapMagic,
+                                   .version = kMapFileVersion,
+                                   .tables = kTables,
+                                   .before = &kMapKindBefore7,
+                                   .remedy = "`samewhere map FILE upgrade` rewrites it"};
+
+// The table of suspended loops in a file of this version.
+constexpr const char* suspended_loops_table(std::int64_t version) {
+  return version < 7 ? kSuspendedLoopBefore7 : kSuspendedLoop;
+}
 
 // Number of rows after a commit, to detect missing rows (but not thumbnails, which no other row
 // names).

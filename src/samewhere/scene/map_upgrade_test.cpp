@@ -1,9 +1,13 @@
-#include <gmock/gmock.h>
+#include <csignal>
 
-#include <samewhere/scene/map_tables.hpp>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <samewhere/core/file.hpp>
 #include <samewhere/scene/map_upgrade.hpp>
 #include <samewhere/scene/test_forged_map.hpp>
 #include <samewhere/scene/test_map_file.hpp>
+#include <samewhere/scene/writer_lock.hpp>
 
 namespace samewhere::scene {
 namespace {
@@ -48,21 +52,13 @@ class Upgrade : public MapFiles {
     make_version_6(path());
   }
 
-  void expect_as_before() {
+  void expect_as_before(const std::string& thumbnail = "jpeg") {
     MapFile file = MapFile::open(path());
     const StoredMap now = file.load();
-    ASSERT_EQ(now.map.keyframes.size(), before_.map.keyframes.size());
-    for (std::size_t i = 0; i < now.map.keyframes.size(); ++i)
-      EXPECT_TRUE(is_same(now.map.keyframes[i], before_.map.keyframes[i])) << i;
-    ASSERT_EQ(now.map.landmarks.size(), before_.map.landmarks.size());
-    for (std::size_t i = 0; i < now.map.landmarks.size(); ++i)
-      EXPECT_TRUE(is_same(now.map.landmarks[i], before_.map.landmarks[i])) << i;
-    ASSERT_EQ(now.map.suspended_loops.size(), before_.map.suspended_loops.size());
+    expect_same(now.map, before_.map);
+    expect_same(now.extras, before_.extras);
     EXPECT_EQ(now.map.suspended_loops.back().query, map_.keyframes[5].id);
-    EXPECT_EQ(now.map.number, before_.map.number);
-    EXPECT_EQ(now.extras.ledger, before_.extras.ledger);
-    EXPECT_EQ(now.extras.frames.size(), before_.extras.frames.size());
-    EXPECT_EQ(file.thumbnail(map_.keyframes[2].view.frame), "jpeg");
+    EXPECT_EQ(file.thumbnail(map_.keyframes[2].view.frame), thumbnail);
     EXPECT_EQ(file.header().at("features.num_features"), "1000");
   }
 
@@ -78,7 +74,7 @@ TEST_F(Upgrade, TheVersionBeforeIsRead) {
 TEST_F(Upgrade, TheVersionBeforeIsNotWritten) {
   EXPECT_THAT(complaint([&] { MapFile::open(path(), MapAccess::kExtend); }),
               HasSubstr("is a samewhere map of version 6, which is read only; expected version 7: "
-                        "`samewhere map FILE upgrade` makes it"));
+                        "`samewhere map FILE upgrade` rewrites it"));
 }
 
 TEST_F(Upgrade, RewritesTheFileInTheCurrentVersionOnce) {
@@ -86,13 +82,45 @@ TEST_F(Upgrade, RewritesTheFileInTheCurrentVersionOnce) {
   expect_as_before();
   EXPECT_TRUE(MapFile::open(path(), MapAccess::kExtend).is_current());
   EXPECT_FALSE(upgrade_map_file(path()));
-  EXPECT_FALSE(std::filesystem::exists(path("m.sw.upgrade")));
+  EXPECT_FALSE(std::filesystem::exists(path("m.sw.partial-upgrade")));
+}
+
+// A program of then was killed: its last commit is in the log.
+TEST_F(Upgrade, TheLogOfAKilledProgramIsPartOfTheFile) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto frame = static_cast<std::int64_t>(map_.keyframes[2].view.frame.value());
+    const std::string sql = fmt::format(
+        "PRAGMA journal_mode=WAL; INSERT OR REPLACE INTO thumbnail VALUES ({}, x'{}', {})", frame,
+        hex_of("later"), forged_checksum("thumbnail", frame, "later"));
+    sqlite3* connection = nullptr;
+    sqlite3_open(path().c_str(), &connection);
+    sqlite3_exec(connection, sql.c_str(), nullptr, nullptr, nullptr);
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(std::filesystem::exists(path("m.sw-wal"))) << "without it this shows nothing";
+  EXPECT_TRUE(upgrade_map_file(path()));
+  expect_as_before("later");
+  EXPECT_TRUE(MapFile::open(path()).is_current());
+}
+
+TEST_F(Upgrade, WhatACrashLeftIsReplaced) {
+  core::write_file(path("m.sw.partial-upgrade"), "half a map");
+  EXPECT_TRUE(upgrade_map_file(path()));
+  expect_as_before();
+}
+
+TEST_F(Upgrade, AFileThatAnotherProgramWritesIsRefused) {
+  const WriterLock other(path(), WriterLock::File::kIsThere);
+  EXPECT_THAT(complaint([&] { upgrade_map_file(path()); }),
+              HasSubstr("another program is writing"));
 }
 
 TEST_F(Upgrade, ADamagedFileStaysAsItIs) {
   run_sql(path(), "UPDATE doubted_loop SET checksum = 1");
   EXPECT_THAT(complaint([&] { upgrade_map_file(path()); }), HasSubstr("is damaged"));
-  EXPECT_FALSE(std::filesystem::exists(path("m.sw.upgrade")));
+  EXPECT_FALSE(std::filesystem::exists(path("m.sw.partial-upgrade")));
   EXPECT_THAT(complaint([&] { MapFile::open(path()).load(); }), HasSubstr("doubted_loop"));
 }
 

@@ -85,12 +85,14 @@ const FileKind& kind_of(Database& database, const FileKind& kind, OpenMode mode)
   if (version == kind.version) return kind;
   const bool is_before = kind.before != nullptr && version == kind.before->version;
   if (is_before && mode == OpenMode::kRead) return *kind.before;
+  const std::string found = fmt::format("is a {} of version {}", kind.name, version);
   if (is_before)
-    refuse(database.path(), fmt::format("is a {} of version {}, which is read only; expected "
-                                        "version {}: `samewhere map FILE upgrade` makes it",
-                                        kind.name, version, kind.version));
-  refuse(database.path(), fmt::format("is a {} of version {}; expected version {}", kind.name,
-                                      version, kind.version));
+    refuse(database.path(), fmt::format("{}, which is read only; expected version {}: {}", found,
+                                        kind.version, kind.remedy));
+  refuse(database.path(), kind.before == nullptr
+                              ? fmt::format("{}; expected version {}", found, kind.version)
+                              : fmt::format("{}; expected version {} or {}", found,
+                                            kind.before->version, kind.version));
 }
 
 // Nothing but the tables, each as it was made: no trigger, view, index or column beside them.
@@ -207,6 +209,8 @@ RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, O
   file.database_->check_pages();
   return file;
 }
+
+void RowFile::recover(const std::filesystem::path& path) { put_in_order(path, path); }
 
 void RowFile::begin_writing() {
   if (has_log_) return;

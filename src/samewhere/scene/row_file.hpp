@@ -18,6 +18,7 @@ struct FileKind {
   std::int64_t version = 0;             // SQLite's user_version
   std::span<const char* const> tables;  // a message calls a row "TABLE NUMBER"
   const FileKind* before = nullptr;     // the version before, which can be read and not written
+  std::string_view remedy = {};         // how a file of that version becomes one of this
 };
 
 // An SQLite file of tables of numbered rows of bytes, each with a checksum. One program writes to
@@ -33,6 +34,9 @@ class RowFile {
   // What a killed program left is put in order, in place or, where the folder cannot be written, in
   // a copy.
   static RowFile open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode);
+
+  // Writes into the file what a killed program left beside it. The caller holds the writer's lock.
+  static void recover(const std::filesystem::path& path);
 
   RowFile(RowFile&&) = default;
   RowFile& operator=(RowFile&&) = delete;
