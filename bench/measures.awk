@@ -25,6 +25,7 @@ function figure(name, value) {
   else if (name ~ /^recall at 100 % precision/) put("recall at 100 % precision", "recall", first_number(value))
   else if (name ~ /^frames with a .*pose/) put("frames with a pose", "recall", share(value))
   else if (name ~ /^(loops )?accepted: (right|true|correct) \/ (wrong|false) \//) put("false loops", "false", second(value))
+  else if (name ~ /^(relocalizations|lost and found again): /) put("wrong relocalizations", "false", second(value))
   else if (name ~ /^(of these|false loops) between two floors/) put("loops between two floors", "false", first_number(value))
   else if (name ~ /^revisits closed,? or/ && share(value) != "") put("revisits closed or relocalized", "recall", share(value))
   else if (name == "revisits closed" && share(value) != "") put(name, "recall", share(value))

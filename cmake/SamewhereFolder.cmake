@@ -12,7 +12,7 @@ target_compile_options(samewhere_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   # fields left out of a designated initialiser have their defaults
   -Wno-missing-field-initializers
-  # gcc 12 cries wolf inside Eigen, and where strings are put together
+  # gcc 12 warns falsely inside Eigen, and where strings are put together
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>
   # one rounding per operation: the same result on every build of the same source

@@ -13,7 +13,7 @@ namespace {
 TEST(FiguresJson, GivesTheNumbersBesideTheTextOfEach) {
   const auto document = nlohmann::json::parse(
       figures_json("office", {figure("ATE RMSE (median)", "{:.2f} m ({:.2f})", 0.01331, 0.0126),
-                              figure("loops accepted: right / wrong", "{} / {}", 1, 0U),
+                              figure("loops accepted: true / false", "{} / {}", 1, 0U),
                               {"describer", "a49a75344d825251, hog"},
                               {"scale", "unknown since 2020"}}));
   EXPECT_EQ(document["title"], "office");
@@ -23,7 +23,7 @@ TEST(FiguresJson, GivesTheNumbersBesideTheTextOfEach) {
   };
   EXPECT_EQ(figures["ATE RMSE (median)"]["value"], "0.01 m (0.01)");
   EXPECT_EQ(numbers("ATE RMSE (median)"), (std::vector{0.01331, 0.0126})) << "not rounded";
-  EXPECT_EQ(numbers("loops accepted: right / wrong"), (std::vector{1.0, 0.0}));
+  EXPECT_EQ(numbers("loops accepted: true / false"), (std::vector{1.0, 0.0}));
   EXPECT_EQ(figures["describer"]["value"], "a49a75344d825251, hog");
   EXPECT_TRUE(numbers("scale").empty()) << "of a text none are taken";
 }
