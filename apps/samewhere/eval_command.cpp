@@ -36,7 +36,7 @@ void add_eval_command(CLI::App& app) {
                                        "qz qw), if the recording has none");
   CLI::Option* walk = sub->add_option(
       "--walk", command->walk,
-      "count accepted loops between floors, by a list `image floor clip` of the run's source");
+      "count accepted loops between floors, by a list `image floor [clip]` of the run's source");
   walk->excludes(truth);
   sub->add_flag("--stages", command->stages, "print wall time and CPU time of each stage instead")
       ->excludes(truth)

@@ -221,6 +221,17 @@ void add_fov_option(CLI::App& sub, RunCommand& command) {
       ->check(CLI::Range(5.0, 170.0));
 }
 
+void add_prior_option(CLI::App& sub, RunCommand& command) {
+  sub.add_option_function<std::string>(
+         "--prior",
+         [&command](const std::string& prior) {
+           command.config.assignments.push_back("verify.prior=" + prior);
+         },
+         "what is known of the building: repetitive (default), places may look alike and "
+         "appearance alone accepts nothing; unique, no two places look alike")
+      ->type_name("repetitive|unique");
+}
+
 void add_map_options(CLI::App& sub, RunCommand& command) {
   CLI::Option* map = sub.add_option("--map", command.map,
                                     "start LOST in this map and relocalize; the map is extended");
@@ -249,6 +260,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
                 "process a camera or a video in real time: always the newest frame, others are "
                 "dropped and counted; results differ from run to run");
   add_config_options(*sub, command->config);
+  add_prior_option(*sub, *command);
   add_json_option(*sub, command->figures);
   add_quiet_flag(*sub, command->figures);
   sub->add_flag_callback(
@@ -277,6 +289,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "  samewhere run walk.mp4 --camera camera.txt --realtime  in real time, as a live "
           "camera\n"
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
+          "  samewhere run flat --prior unique                  no two places look alike: "
+          "appearance accepts\n"
           "  samewhere run today --map runs/kitchen/map.sw --localize  localize in a saved "
           "map");
 }
@@ -289,6 +303,7 @@ void add_loops_command(CLI::App& app, int& exit_code) {
           "Examples:\n"
           "  samewhere loops photos/ --set retrieve.window_frames=20  images in the order of their "
           "numbers\n"
+          "  samewhere loops flat --prior unique                      no two places look alike\n"
           "  samewhere loops corridor --profile paper                 the published method\n"
           "Precision and recall are printed where the folder holds same_place.txt or "
           "same_place.pgm.");

@@ -181,17 +181,18 @@ TEST_F(Commands, LoopsWritesTheFilesThatOthersRead) {
   EXPECT_EQ(run("eval " + quoted(path("loops"))).exit_code, 0);
 }
 
-TEST_F(Commands, LoopsSaysHowManyFramesMatchThatNoViewsInARowConfirm) {
+TEST_F(Commands, LoopsAcceptNothingByAppearanceAloneUnlessNoPlacesLookAlike) {
   const std::string walk =
       "loops 'twin:office-loop?seed=2&camera=mono' --set twin.num_frames=8 --set "
       "retrieve.window_frames=2 --out ";
   const Outcome waiting = run(walk + quoted(path("waiting")));
   ASSERT_EQ(waiting.exit_code, 0) << waiting.err;
   EXPECT_THAT(waiting.out,
-              HasSubstr("5 frames match an earlier one, but no 12 consecutive views do"));
-  const Outcome alone = run(walk + quoted(path("alone")) + " --set verify.min_views=1");
+              HasSubstr("5 frames match an earlier one, and appearance alone accepts nothing"));
+  EXPECT_EQ(core::read_file(path("waiting") / "accepted.txt").size(), 0U);
+  const Outcome alone = run(walk + quoted(path("alone")) + " --prior unique");
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  EXPECT_THAT(alone.out, Not(HasSubstr("consecutive views")));
+  EXPECT_THAT(alone.out, Not(HasSubstr("appearance alone")));
   EXPECT_GT(core::read_file(path("alone") / "accepted.txt").size(), 0U);
 }
 

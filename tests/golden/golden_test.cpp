@@ -1,11 +1,16 @@
 // Acceptance on real recordings with the shipped config. ATE and rotational error are at most 20 %
 // above the measured figures (bench/RESULTS.md); counts are exact or at most 20 % below.
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <opencv2/core/utility.hpp>
+#include <unistd.h>
 
+#include <samewhere/core/file.hpp>
 #include <samewhere/run/open_source.hpp>
 #include <samewhere/run/run.hpp>
 #include <samewhere/run/run_metrics.hpp>
@@ -80,8 +85,8 @@ TEST_F(Golden, NearPureRotationIsTrackedToTheEnd) {
 
 // Two laps through a corridor of near-identical doors, 44 true loops; the best peer closes 43.
 TEST_F(Golden, ImagesAloneCloseTheLoopsOfTheSecondLapThroughTheCorridor) {
-  const pipeline::Config config =
-      config_of("rtabmap_corridor", {"retrieve.window_frames=19"}, "recognition");
+  const pipeline::Config config = config_of(
+      "rtabmap_corridor", {"retrieve.window_frames=19", "verify.prior=unique"}, "recognition");
   auto source = run::open_source(config);
   const core::Truth truth = source->truth();
   const run::RunOutcome outcome = run::run_recognition(std::move(source), config);
@@ -89,6 +94,27 @@ TEST_F(Golden, ImagesAloneCloseTheLoopsOfTheSecondLapThroughTheCorridor) {
       *run::evaluate_recognition({0, outcome.matches, outcome.accepted, 19}, truth).accepted;
   EXPECT_GE(found.num_true, 42);
   EXPECT_EQ(found.num_false, 0);
+}
+
+// One corridor on two real floors, every loop is false; every fifth image.
+TEST_F(Golden, AppearanceAloneAcceptsNothingOnTwoFloorsThatLookAlike) {
+  const auto list = std::filesystem::path(testing::TempDir()) /
+                    fmt::format("samewhere_two_floors_{}.txt", getpid());
+  std::string images;
+  for (int floor : {2, 3})
+    for (int i = 1; i < 500; i += 10)
+      images += fmt::format("{}/twofloors/f{}_{:05}.jpg\n", data_, floor, i);
+  core::write_file(list, images);
+  pipeline::Config config = pipeline::load_config("recognition", "", {"retrieve.window_frames=45"});
+  config.source = list.string();
+  const run::RunOutcome outcome = run::run_recognition(run::open_source(config), config);
+  std::filesystem::remove(list);
+  EXPECT_TRUE(outcome.accepted.empty());
+  const auto is_alone = [](const core::LedgerRow& row) {
+    return core::stage_of(row.verdict) == "evidence";
+  };
+  EXPECT_GT(std::ranges::count_if(outcome.record.ledger, is_alone), 20)
+      << "without look-alikes that pass all other checks this shows nothing";
 }
 
 // Bounds: the better published HOG row of docs/evaluation.md.

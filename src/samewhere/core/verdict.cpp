@@ -39,10 +39,14 @@ std::string_view name_of(Refusal refusal) {
       return "consistency";
     case Refusal::kOdometry:
       return "odometry";
+    case Refusal::kDeformation:
+      return "deformation";
     case Refusal::kCompeting:
       return "competing";
     case Refusal::kSequence:
       return "sequence";
+    case Refusal::kEvidence:
+      return "evidence";
     case Refusal::kGraph:
       return "graph";
     case Refusal::kWithdrawn:

@@ -62,6 +62,24 @@ struct OdometryEvidence {
   // Of the correction under the accumulated drift since the match; chi-square with 6 degrees of
   // freedom. Without depth the scale drift that the candidate implies is taken out first.
   double mahalanobis_squared = 0.0;
+  // Standard deviation of the query's position relative to the match, in its least certain
+  // direction. Without depth in units of the map. None: odometry does not join the two.
+  std::optional<double> sigma_m;
+  // Log-likelihood ratio, times two, of this place over the most likely look-alike place that is at
+  // least verify.min_look_alike_distance_m away, under odometry. None as before.
+  std::optional<double> look_alike_gain;
+  // The same, and the Mahalanobis distance, under odometry and the loops closed so far. None
+  // without loops.
+  std::optional<double> look_alike_gain_with_loops;
+  std::optional<double> mahalanobis_squared_with_loops;
+};
+
+// How much the candidate bends the trajectory from its match to its query: root mean square
+// displacement of the keyframes when it is added to the pose graph, after rigid alignment, and the
+// length of that stretch of the trajectory.
+struct DeformationEvidence {
+  double rmse_m = 0.0;
+  double path_m = 0.0;
 };
 
 // Competing hypothesis of an earlier loop: where it has put the query, and how far from there this
@@ -102,14 +120,15 @@ struct Evidence {
   double similarity = 0.0;
   std::optional<GeometryEvidence> geometry;
   std::optional<OdometryEvidence> odometry;
+  std::optional<DeformationEvidence> deformation;  // verify.method deformation
   std::optional<CompetingLoopEvidence> competing_loop;
   std::optional<CompetingPlaceEvidence> competing_place;
   std::optional<SequenceEvidence> sequence;
 };
 
-// The checks, in their order; the first that fails decides. kGraph: accepted by the loop verifier,
-// but rejected by the robust pose graph together with odometry and the loops before; kWithdrawn:
-// contradicted by a later loop.
+// The checks, in their order; the first that fails decides. kEvidence: all that is known would also
+// hold of a look-alike place; kGraph: accepted by the loop verifier, but rejected by the robust
+// pose graph together with odometry and the loops before; kWithdrawn: contradicted by a later loop.
 enum class Refusal {
   kSimilarity,
   kPause,
@@ -119,16 +138,19 @@ enum class Refusal {
   kPose,
   kConsistency,
   kOdometry,
+  kDeformation,
   kCompeting,
   kSequence,
+  kEvidence,
   kGraph,
   kWithdrawn
 };
 
 inline constexpr Refusal kAllRefusals[] = {
-    Refusal::kSimilarity, Refusal::kPause,    Refusal::kMatches,     Refusal::kInliers,
-    Refusal::kSpread,     Refusal::kPose,     Refusal::kConsistency, Refusal::kOdometry,
-    Refusal::kCompeting,  Refusal::kSequence, Refusal::kGraph,       Refusal::kWithdrawn};
+    Refusal::kSimilarity,  Refusal::kPause,     Refusal::kMatches,     Refusal::kInliers,
+    Refusal::kSpread,      Refusal::kPose,      Refusal::kConsistency, Refusal::kOdometry,
+    Refusal::kDeformation, Refusal::kCompeting, Refusal::kSequence,    Refusal::kEvidence,
+    Refusal::kGraph,       Refusal::kWithdrawn};
 
 std::string_view name_of(Refusal refusal);
 

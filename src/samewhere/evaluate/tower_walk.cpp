@@ -19,10 +19,10 @@ const WalkPlace& place_at(const std::vector<WalkPlace>& walk, int position) {
 std::vector<WalkPlace> read_walk(const std::filesystem::path& path) {
   std::vector<WalkPlace> walk;
   for (const core::TextLine& line : core::read_text_lines(path)) {
-    if (line.words.size() < 3)
-      throw core::InputError(fmt::format("{}: found {} words, expected 'image floor clip'",
+    if (line.words.size() < 2)
+      throw core::InputError(fmt::format("{}: found {} words, expected 'image floor [clip]'",
                                          line.place, line.words.size()));
-    walk.push_back({line.words[1], line.words[2]});
+    walk.push_back({line.words[1], line.words.size() > 2 ? line.words[2] : line.words[1]});
   }
   return walk;
 }

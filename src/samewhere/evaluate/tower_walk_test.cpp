@@ -43,9 +43,16 @@ TEST_F(TowerWalk, EveryLoopBetweenTwoFloorsIsWrong) {
   EXPECT_EQ(counts.num_same_clip, 1);
 }
 
+TEST_F(TowerWalk, WithoutClipsEachFloorIsOne) {
+  const WalkCounts counts =
+      count_walk(walk_of("a.jpg 2\nb.jpg 2\nc.jpg 3\n"), {{1, 0, 1.0}, {2, 0, 1.0}});
+  EXPECT_EQ(counts.num_false, 1);
+  EXPECT_EQ(counts.num_same_clip, 1);
+}
+
 TEST_F(TowerWalk, AShortLineIsNamed) {
   try {
-    walk_of("a.jpg floor3 c1\nb.jpg floor3\n");
+    walk_of("a.jpg floor3 c1\nb.jpg\n");
     FAIL() << "expected an InputError";
   } catch (const core::InputError& error) {
     EXPECT_NE(std::string(error.what()).find("walk.txt, line 2"), std::string::npos);

@@ -4,6 +4,7 @@
 #include <samewhere/pipeline/loop_closing.hpp>
 #include <samewhere/pipeline/verifier_settings.hpp>
 #include <samewhere/report/jpeg.hpp>
+#include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/measure_competing.hpp>
 
 namespace samewhere::pipeline {
@@ -86,7 +87,7 @@ LoopAnswer LoopClosing::answer(const FindPlace& question) {
     if (!geometry || geometry->num_inliers == 0) continue;
     Place place{.keyframe = keyframe_of_.at(row.candidate.match),
                 .keyframe_from_body = std::nullopt,
-                .is_recognised = core::is_loop(row.verdict)};
+                .is_recognised = verify::is_recognized(row.verdict)};
     if (geometry->match_from_query)
       place.keyframe_from_body = rigid_part(*geometry->match_from_query);
     answer.places.push_back(place);

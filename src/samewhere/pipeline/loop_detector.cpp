@@ -19,7 +19,8 @@ LoopDetector::LoopDetector(const Config& config, const verify::VerifierSettings&
       verifier_(settings),
       relocalization_verifier_(relocalization_settings(config)),
       sequences_(settings.measure, window_frames_of(config)),
-      neighbours_(window_frames_of(config)) {}
+      neighbours_(window_frames_of(config)),
+      waiting_(verifier_) {}
 
 std::vector<core::LedgerRow> LoopDetector::detect(const cv::Mat& image, const features::View& view,
                                                   const verify::MapContext& map,
@@ -73,7 +74,11 @@ std::vector<core::LedgerRow> LoopDetector::verify(const core::Descriptor& descri
     rows.push_back(verify_candidate(candidate, views_.at(candidate.query), map));
   auto settled = sequences_.settle(view.frame);
   for (const core::LedgerRow& row : settled) record(row);
+  auto decided = waiting_.ask_again(map);
+  for (const core::LedgerRow& row : decided) record(row);
+  waiting_.add(rows);
   std::move(settled.begin(), settled.end(), std::back_inserter(rows));
+  std::move(decided.begin(), decided.end(), std::back_inserter(rows));
   return rows;
 }
 

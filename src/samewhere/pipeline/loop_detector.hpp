@@ -13,6 +13,7 @@
 #include <samewhere/verify/map_context.hpp>
 #include <samewhere/verify/neighbours.hpp>
 #include <samewhere/verify/sequence_verifier.hpp>
+#include <samewhere/verify/waiting_candidates.hpp>
 
 namespace samewhere::pipeline {
 
@@ -39,7 +40,7 @@ class LoopDetector {
   void remember(const core::Descriptor& descriptor, const features::View& view);
 
   // One row for each candidate, in their order; then of neighbours of the best match, of predicted
-  // candidates, and later rows of pending ones.
+  // candidates, and later rows of pending and of waiting ones.
   std::vector<core::LedgerRow> verify(const core::Descriptor& descriptor,
                                       const std::vector<core::Candidate>& candidates,
                                       const features::View& view, const verify::MapContext& map);
@@ -65,6 +66,7 @@ class LoopDetector {
   verify::LoopVerifier relocalization_verifier_;
   verify::SequenceVerifier sequences_;
   verify::Neighbours neighbours_;
+  verify::WaitingCandidates waiting_;
   verify::History history_;
   std::map<core::FrameId, features::View> views_;
   std::uint64_t num_candidates_ = 0;

@@ -90,6 +90,7 @@ class CompetingPlaces : public testing::Test {
   std::vector<core::LedgerRow> verified(double turned_rad, bool are_two) {
     Config config;
     config.retrieve.window_frames = 40;
+    config.verify.prior = verify::Prior::kUnique;  // there is no odometry
     LoopDetector detector = detector_of(config);
     const features::TestWorld world = features::test_world(3);
     const auto view = [&](int frame, double angle_rad) {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <samewhere/core/match_from_query.hpp>
+#include <samewhere/correct/deformation.hpp>
 #include <samewhere/pipeline/map_context.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_competing.hpp>
@@ -32,6 +33,19 @@ std::optional<verify::CandidateViews> MapVersionContext::views_with_landmark_dep
   if (!is_without_depth_) return std::nullopt;
   return verify::CandidateViews{with_known_depths(map_, end_of(candidate.query)),
                                 with_known_depths(map_, end_of(candidate.match))};
+}
+
+std::vector<core::CandidateId> MapVersionContext::loops() const {
+  std::vector<core::CandidateId> causes;
+  for (const scene::LoopEdge& loop : map_.loops) causes.push_back(loop.cause);
+  return causes;
+}
+
+std::optional<core::DeformationEvidence> MapVersionContext::measure_deformation(
+    const core::Candidate& candidate, const core::Sim3& match_from_query) const {
+  scene::LoopEdge edge = edge_of(candidate, match_from_query);
+  edge.information = verify::loop_information(config_.verify);
+  return correct::measure_deformation(map_, edge, config_.optimize);
 }
 
 std::optional<core::OdometryEvidence> MapVersionContext::measure_odometry(

@@ -31,6 +31,9 @@ class MapVersionContext final : public verify::MapContext {
 
   std::optional<verify::CandidateViews> views_with_landmark_depths(
       const core::Candidate& candidate) const override;
+  std::vector<core::CandidateId> loops() const override;
+  std::optional<core::DeformationEvidence> measure_deformation(
+      const core::Candidate& candidate, const core::Sim3& match_from_query) const override;
   std::optional<core::OdometryEvidence> measure_odometry(
       const core::Candidate& candidate, const core::Sim3& match_from_query) const override;
   std::optional<core::CompetingLoopEvidence> measure_competing_loop(

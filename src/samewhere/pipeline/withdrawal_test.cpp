@@ -19,6 +19,7 @@ core::LedgerRow accepted(core::CandidateId id) {
                                                   .inlier_ratio = 0.75,
                                                   .spread_ratio = 0.5,
                                                   .match_from_query = core::Sim3{}};
+  loop.evidence.odometry = core::OdometryEvidence{.sigma_m = 0.1, .look_alike_gain = 900.0};
   return {{.id = id, .query = core::FrameId(12), .match = core::FrameId(0)}, loop};
 }
 

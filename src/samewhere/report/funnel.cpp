@@ -57,10 +57,14 @@ std::string_view question_of(core::Refusal check) {
       return "do the relative poses from both views' depth agree?";
     case core::Refusal::kOdometry:
       return "is the correction within the accumulated drift?";
+    case core::Refusal::kDeformation:
+      return "method deformation: does it bend the trajectory little?";
     case core::Refusal::kCompeting:
       return "does no other place explain the query?";
     case core::Refusal::kSequence:
       return "do neighbouring views match too, where nothing else decides?";
+    case core::Refusal::kEvidence:
+      return "would a look-alike place not give the same evidence?";
     case core::Refusal::kGraph:
       return "is it consistent with the loops before it?";
     case core::Refusal::kWithdrawn:

@@ -66,6 +66,20 @@ Json scores_of(const core::Verdict& verdict) {
     add_score(scores, "correction_m", evidence.odometry->correction_m);
     add_score(scores, "correction_rad", evidence.odometry->correction_rad);
     add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
+    if (evidence.odometry->sigma_m)
+      add_score(scores, "odometry_sigma_m", *evidence.odometry->sigma_m);
+    if (evidence.odometry->look_alike_gain)
+      add_score(scores, "look_alike_gain", *evidence.odometry->look_alike_gain);
+    if (evidence.odometry->look_alike_gain_with_loops)
+      add_score(scores, "look_alike_gain_with_loops",
+                *evidence.odometry->look_alike_gain_with_loops);
+    if (evidence.odometry->mahalanobis_squared_with_loops)
+      add_score(scores, "mahalanobis_squared_with_loops",
+                *evidence.odometry->mahalanobis_squared_with_loops);
+  }
+  if (evidence.deformation) {
+    add_score(scores, "deformation_rmse_m", evidence.deformation->rmse_m);
+    add_score(scores, "deformation_path_m", evidence.deformation->path_m);
   }
   if (evidence.competing_loop) add_competing_loop(scores, *evidence.competing_loop);
   if (evidence.competing_place) add_competing_place(scores, *evidence.competing_place);

@@ -129,7 +129,14 @@ class Entry {
     if (score("num_matches")) evidence.geometry = geometry();
     if (const auto squared = score("mahalanobis_squared"))
       evidence.odometry = {score("correction_m").value_or(0.0),
-                           score("correction_rad").value_or(0.0), *squared};
+                           score("correction_rad").value_or(0.0),
+                           *squared,
+                           score("odometry_sigma_m"),
+                           score("look_alike_gain"),
+                           score("look_alike_gain_with_loops"),
+                           score("mahalanobis_squared_with_loops")};
+    if (const auto rmse_m = score("deformation_rmse_m"))
+      evidence.deformation = {*rmse_m, score("deformation_path_m").value_or(0.0)};
     if (scores_.contains("competing_loop"))
       evidence.competing_loop = competing_loop("competing_loop", "competing_loop_first");
     else if (scores_.contains("rival"))

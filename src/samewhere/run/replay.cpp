@@ -20,15 +20,10 @@ bool is_by_hand(const core::Verdict& verdict) {
   return loop != nullptr && loop->is_by_hand;
 }
 
-bool is_pending(const core::Verdict& verdict) {
-  const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
-  return ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence;
-}
-
 // The run stopped measuring at its own thresholds.
 bool is_unmeasured(const core::Evidence& evidence, const core::Verdict& after,
                    const verify::Config& config) {
-  if (is_pending(after) && !evidence.sequence) return true;
+  if (verify::is_pending(after) && !evidence.sequence) return true;
   if (evidence.geometry || !config.require_geometry) return false;
   const auto* refused = std::get_if<core::Rejection>(&after);
   return refused == nullptr || refused->stage == core::Refusal::kMatches;
@@ -65,7 +60,7 @@ class Replayer {
     }
     core::Verdict verdict = verify::decide(row.candidate, evidence, history_, config_);
     if (core::is_loop(verdict)) history_.last_loop_query = row.candidate.query;
-    if (is_pending(verdict) && evidence.sequence) pending_.add(row.candidate, evidence);
+    if (verify::is_pending(verdict) && evidence.sequence) pending_.add(row.candidate, evidence);
     verdicts_.insert_or_assign(row.candidate.id, std::move(verdict));
   }
 

@@ -17,6 +17,7 @@ core::Evidence evidence(int num_inliers) {
                                              .inlier_ratio = 0.5,
                                              .spread_ratio = 0.5,
                                              .match_from_query = core::Sim3{}};
+  evidence.odometry = core::OdometryEvidence{.sigma_m = 0.1, .look_alike_gain = 900.0};
   return evidence;
 }
 
@@ -63,6 +64,7 @@ TEST(Replay, ThePauseFollowsTheNewVerdicts) {
 
 TEST(Replay, ASequenceIsCountedAgainFromCandidatesThatPassNow) {
   verify::Config few;
+  few.prior = verify::Prior::kUnique;
   few.require_pose = false;
   few.min_views = 3;
   core::Ledger ledger;

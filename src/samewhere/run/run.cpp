@@ -20,6 +20,7 @@
 #include <samewhere/run/map_export.hpp>
 #include <samewhere/run/mapped_slam.hpp>
 #include <samewhere/run/open_source.hpp>
+#include <samewhere/run/prior.hpp>
 #include <samewhere/run/recognition.hpp>
 #include <samewhere/run/run.hpp>
 #include <samewhere/run/run_metrics.hpp>
@@ -190,6 +191,7 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   }
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"not initialized, at the end", slam.why_not_initialized()});
+  record.figures.push_back(prior_figure(record.ledger, config.verify));
   record.figures.push_back(
       report::figure("re-initializations", "{}", slam.num_reinitializations()));
   record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
@@ -199,14 +201,13 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   record.truth = aligned_truth(evaluation, truth);
 }
 
-// Frames whose match passes the geometric checks but no sequence of views confirms; none if any
-// loop was accepted.
-std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger) {
+// Frames whose match passes the geometric checks but neither sequence nor prior accepts it; none if
+// any loop was accepted.
+std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger, core::Refusal check) {
   std::set<core::FrameId> unconfirmed;
   for (const core::LedgerRow* row : report::final_rows(ledger)) {
     if (core::is_loop(row->verdict)) return {};
-    const auto* refused = std::get_if<core::Rejection>(&row->verdict);
-    if (refused != nullptr && refused->stage == core::Refusal::kSequence)
+    if (core::stage_of(row->verdict) == core::name_of(check))
       unconfirmed.insert(row->candidate.query);
   }
   return unconfirmed;
@@ -220,11 +221,18 @@ std::optional<std::string> note_on(const core::Ledger& ledger, const pipeline::C
         "(retrieve.window_frames)",
         config.retrieve.window_frames);
   }
-  const std::size_t num_unconfirmed = unconfirmed_queries(ledger).size();
+  const std::size_t num_alone = unconfirmed_queries(ledger, core::Refusal::kEvidence).size();
+  if (num_alone > 0) {
+    return fmt::format(
+        "{} frames match an earlier one, and appearance alone accepts nothing; where no two places "
+        "look alike, --prior unique does",
+        num_alone);
+  }
+  const std::size_t num_unconfirmed = unconfirmed_queries(ledger, core::Refusal::kSequence).size();
   if (num_unconfirmed == 0) return std::nullopt;
   return fmt::format(
-      "{} frames match an earlier one, but no {} consecutive views do; without look-alike "
-      "places, --set verify.min_views=1 accepts single views",
+      "{} frames match an earlier one, but no {} consecutive views do; --set verify.min_views=1 "
+      "accepts single views",
       num_unconfirmed, config.verify.min_views);
 }
 
@@ -288,6 +296,7 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const pipel
                                      config.retrieve.window_frames};
   const auto measured = figures_of(evaluate_recognition(findings, truth));
   record.figures.insert(record.figures.begin(), measured.begin(), measured.end());
+  record.figures.push_back(prior_figure(record.ledger, config.verify));
   if (auto note = note_on(record.ledger, config))
     record.figures.push_back({"note", *std::move(note)});
   return outcome;

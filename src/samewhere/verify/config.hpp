@@ -7,7 +7,22 @@ namespace samewhere::verify {
 // What makes a candidate the best of its query.
 enum class RankBy { kSimilarity, kInliers };
 
+// Whether places of this building may look alike. kRepetitive: appearance alone accepts nothing.
+// kUnique: the user states that there are none, and appearance with geometry accepts.
+enum class Prior { kRepetitive, kUnique };
+
+// What decides on a candidate with a relative pose. kEvidence: odometry gate, competing hypotheses
+// and prior. kDeformation: how much the pose graph bends, after ROVER (Yu et al., arXiv
+// 2508.13488): a baseline to compare with.
+enum class Method { kEvidence, kDeformation };
+
 struct Config {
+  Prior prior = Prior::kRepetitive;
+  Method method = Method::kEvidence;
+  double max_deformation_ratio = 0.02;
+  double min_look_alike_distance_m = 3.0;
+  double min_look_alike_distance_without_depth = 1.0;
+  double min_look_alike_gain = 12.0;
   double min_similarity = -1.0;
   int pause_frames = 0;
   bool require_geometry = true;
@@ -33,8 +48,41 @@ struct Config {
   double max_competing_place_ratio = 0.75;
   double loop_sigma_m = 0.03;
   double loop_sigma_rad = 0.01;
+  int asked_again_per_keyframe = 8;
   bool measure_all = false;
 };
+
+inline void visit_evidence(Config& config, core::FieldVisitor& visit) {
+  visit("prior", config.prior,
+        {.help = "repetitive: places may look alike, appearance alone accepts nothing; unique: no "
+                 "two places look alike",
+         .choices = {"repetitive", "unique"}});
+  visit("method", config.method,
+        {.help = "evidence: odometry gate, competing hypotheses and prior decide; deformation: how "
+                 "much the pose graph bends (baseline, after ROVER)",
+         .choices = {"evidence", "deformation"}});
+  visit("max_deformation_ratio", config.max_deformation_ratio,
+        {.help = "method deformation: largest displacement of the keyframes between match and "
+                 "query, root mean square, over the length of the trajectory there",
+         .min = 0.0,
+         .max = 10.0,
+         .is_expert = true});
+  visit("min_look_alike_distance_m", config.min_look_alike_distance_m,
+        {.help = "prior repetitive: least distance of two look-alike places, metres; odometry must "
+                 "tell the loop's place from one so far away",
+         .min = 0.01,
+         .max = 1000.0});
+  visit("min_look_alike_distance_without_depth", config.min_look_alike_distance_without_depth,
+        {.help = "the same without depth, in median landmark depths at initialization",
+         .min = 0.01,
+         .max = 1000.0});
+  visit(
+      "min_look_alike_gain", config.min_look_alike_gain,
+      {.help = "prior repetitive: least log-likelihood ratio, times two, of the loop's place over "
+               "a look-alike place under odometry",
+       .min = 0.0,
+       .max = 1e9});
+}
 
 inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
   visit("min_similarity", config.min_similarity,
@@ -51,7 +99,9 @@ inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
   visit("min_matches", config.min_matches,
         {.help = "least feature matches", .min = 7, .max = 100000});
   visit("min_inliers", config.min_inliers,
-        {.help = "least geometric inliers", .min = 7, .max = 100000});
+        {.help = "least geometric inliers; in `loops` of a view alone, without a sequence",
+         .min = 7,
+         .max = 100000});
   visit("min_spread_ratio", config.min_spread_ratio,
         {.help = "least share of the 8 x 8 image cells with inliers", .min = 0.0, .max = 1.0});
   visit("require_pose", config.require_pose,
@@ -68,7 +118,8 @@ inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
 
 inline void visit_sequence(Config& config, core::FieldVisitor& visit) {
   visit("min_views", config.min_views,
-        {.help = "`loops`: consecutive views that must match (sequence verification); 1: off",
+        {.help = "`loops`: consecutive views that must match where one has fewer than min_inliers "
+                 "(sequence verification); 1: off",
          .min = 1,
          .max = 1000});
   visit("min_inliers_in_sequence", config.min_inliers_in_sequence,
@@ -122,12 +173,18 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
         {.help = "standard deviation of a loop's translation, metres", .min = 1e-4, .max = 10.0});
   visit("loop_sigma_rad", config.loop_sigma_rad,
         {.help = "standard deviation of a loop's rotation, radians", .min = 1e-4, .max = 3.0});
+  visit("asked_again_per_keyframe", config.asked_again_per_keyframe,
+        {.help = "ambiguous candidates of earlier keyframes that are decided again with each "
+                 "keyframe, after the loops of the map have changed; 0: none",
+         .min = 0,
+         .max = 1000});
   visit("measure_all", config.measure_all,
         {.help = "geometry is measured for all candidates, also of those rejected by similarity or "
                  "pause: for `ledger RUN replay`"});
 }
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
+  visit_evidence(config, visit);
   visit_thresholds(config, visit);
   visit_sequence(config, visit);
   visit_measurement(config, visit);

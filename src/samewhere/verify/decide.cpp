@@ -93,6 +93,18 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
                   config.max_odometry_chi_square));
 }
 
+std::optional<Rejection> check_deformation(const Candidate& candidate, const Evidence& evidence,
+                                           const Config& config) {
+  if (!evidence.deformation) return std::nullopt;
+  const auto& [rmse_m, path_m] = *evidence.deformation;
+  if (rmse_m <= config.max_deformation_ratio * path_m) return std::nullopt;
+  return rejection(
+      candidate, evidence, Refusal::kDeformation,
+      fmt::format("would move the keyframes since the match by {:.2f} m, {:.1f} % of "
+                  "the way since then, at most {:.1f} %",
+                  rmse_m, 100.0 * rmse_m / path_m, 100.0 * config.max_deformation_ratio));
+}
+
 // Odometry decides for the candidate, against the loops that it contradicts.
 bool overrules(const core::CompetingLoopEvidence& loop, const Config& config) {
   return loop.mahalanobis_squared > config.max_competing_chi_square && loop.gain &&
@@ -115,6 +127,20 @@ std::optional<core::Verdict> check_competing_loop(const Candidate& candidate,
           config.max_competing_chi_square)};
 }
 
+// All loops of the map together put the query at another place.
+std::optional<core::Verdict> check_loops_of_map(const Candidate& candidate,
+                                                const Evidence& evidence, const Config& config) {
+  if (!contradicts_loops(evidence, config)) return std::nullopt;
+  if (evidence.competing_loop && overrules(*evidence.competing_loop, config)) return std::nullopt;
+  return core::Ambiguous{
+      candidate.id, evidence, Refusal::kCompeting,
+      fmt::format("the loops of the map place the camera elsewhere, {:.2f} m and {:.1f} degrees "
+                  "from here (chi-square {:.0f}, at most {:.0f})",
+                  evidence.odometry->correction_m, evidence.odometry->correction_rad * kDegrees,
+                  *evidence.odometry->mahalanobis_squared_with_loops,
+                  config.max_competing_chi_square)};
+}
+
 // Another candidate of the query has about as many inliers at another place.
 std::optional<core::Verdict> check_competing_place(const Candidate& candidate,
                                                    const Evidence& evidence, const Config& config) {
@@ -133,27 +159,54 @@ std::optional<core::Verdict> check_competing_place(const Candidate& candidate,
           100.0 * config.max_competing_place_ratio, num_inliers)};
 }
 
-// Pending, or given up.
+// So many inliers that no other view has to match.
+bool is_sure_alone(const core::GeometryEvidence& geometry, const Config& config) {
+  return geometry.num_inliers >= config.min_inliers &&
+         geometry.spread_ratio >= config.min_spread_ratio;
+}
+
+// Pending, or rejected after max_pending_views.
 std::optional<core::Verdict> check_sequence(const Candidate& candidate, const Evidence& evidence,
                                             const Config& config) {
   const core::SequenceEvidence sequence = evidence.sequence.value_or(core::SequenceEvidence{});
   if (sequence.num_views >= config.min_views) return std::nullopt;
   if (sequence.is_over) {
+    if (is_sure_alone(*evidence.geometry, config)) return std::nullopt;
     return rejection(candidate, evidence, Refusal::kSequence,
-                     fmt::format("only {} consecutive views match, {} needed", sequence.num_views,
-                                 config.min_views));
+                     fmt::format("only {} consecutive views match, {} needed, or {} inliers",
+                                 sequence.num_views, config.min_views, config.min_inliers));
   }
   return core::Ambiguous{candidate.id, evidence, Refusal::kSequence,
                          fmt::format("{} consecutive views match so far, {} needed: pending",
                                      sequence.num_views, config.min_views)};
 }
 
+// Motion between the visits is the only evidence that a look-alike place would not give as well.
+std::optional<core::Verdict> check_evidence(const Candidate& candidate, const Evidence& evidence,
+                                            const Config& config) {
+  if (config.prior == Prior::kUnique) return std::nullopt;
+  const auto ambiguous = [&](std::string reason) {
+    return core::Ambiguous{candidate.id, evidence, Refusal::kEvidence, std::move(reason)};
+  };
+  const core::OdometryEvidence odometry = evidence.odometry.value_or(core::OdometryEvidence{});
+  // of none or less, the other
+  const auto gain = std::max(odometry.look_alike_gain, odometry.look_alike_gain_with_loops);
+  if (!gain) return ambiguous("appearance alone: cannot be told from a look-alike place");
+  if (*gain >= config.min_look_alike_gain) return std::nullopt;
+  return ambiguous(fmt::format(
+      "odometry is too uncertain (standard deviation {:.2f} m) to tell this place from a "
+      "look-alike place nearby (gain {:.1f}, {:.1f} needed)",
+      odometry.sigma_m.value_or(0.0), *gain, config.min_look_alike_gain));
+}
+
 std::optional<core::Verdict> check_other_views(const Candidate& candidate, const Evidence& evidence,
                                                const Config& config) {
   auto undecided = check_competing_loop(candidate, evidence, config);
+  if (!undecided) undecided = check_loops_of_map(candidate, evidence, config);
   if (!undecided) undecided = check_competing_place(candidate, evidence, config);
   if (!undecided && needs_sequence(*evidence.geometry, config))
     undecided = check_sequence(candidate, evidence, config);
+  if (!undecided) undecided = check_evidence(candidate, evidence, config);
   return undecided;
 }
 
@@ -175,6 +228,26 @@ bool may_need_sequences(const Config& config) {
 
 bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config) {
   return may_need_sequences(config) && !geometry.match_from_query;
+}
+
+bool is_pending(const core::Verdict& verdict) {
+  const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
+  return ambiguous != nullptr && ambiguous->stage == Refusal::kSequence;
+}
+
+bool has_geometry(const Evidence& evidence, const Config& config) {
+  return evidence.geometry && !check_geometry({}, evidence, config);
+}
+
+bool contradicts_loops(const Evidence& evidence, const Config& config) {
+  const auto& odometry = evidence.odometry;
+  return odometry && odometry->mahalanobis_squared_with_loops &&
+         *odometry->mahalanobis_squared_with_loops > config.max_competing_chi_square;
+}
+
+bool is_recognized(const core::Verdict& verdict) {
+  const auto* ambiguous = std::get_if<core::Ambiguous>(&verdict);
+  return core::is_loop(verdict) || (ambiguous != nullptr && ambiguous->stage == Refusal::kEvidence);
 }
 
 std::optional<Rejection> refuse_early(const Candidate& candidate, const Evidence& evidence,
@@ -208,12 +281,16 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
     return rejection(candidate, evidence, Refusal::kMatches, "geometry was not measured");
   }
   auto refused = check_geometry(candidate, evidence, config);
-  if (!refused) refused = check_odometry(candidate, evidence, config);
+  const bool is_by_deformation = config.method == Method::kDeformation && evidence.deformation;
+  if (!refused)
+    refused = is_by_deformation ? check_deformation(candidate, evidence, config)
+                                : check_odometry(candidate, evidence, config);
   if (refused && config.require_geometry) return *refused;
   // without required geometry a pose is used if it is good, and the loop is counted without one if
   // not
   if (!refused) {
-    const auto undecided = check_other_views(candidate, evidence, config);
+    const auto undecided =
+        is_by_deformation ? std::nullopt : check_other_views(candidate, evidence, config);
     if (undecided && config.require_geometry) return *undecided;
     if (!undecided) add_edge(loop, config);
   }

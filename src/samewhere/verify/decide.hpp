@@ -26,6 +26,14 @@ std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
 // this one is.
 bool may_need_sequences(const Config& config);
 bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config);
+// Ambiguous until the views that follow have been seen.
+bool is_pending(const core::Verdict& verdict);
+// Whether the geometric checks pass.
+bool has_geometry(const core::Evidence& evidence, const Config& config);
+// The loops of the map, with odometry, place the query elsewhere.
+bool contradicts_loops(const core::Evidence& evidence, const Config& config);
+// Passes all checks but the last: a loop, or a place that cannot be told from a look-alike.
+bool is_recognized(const core::Verdict& verdict);
 
 // What makes a candidate the best of its query: the similarity, or the inliers by the square of the
 // overlap, for a view that shows most of the same is wanted, not one that shows a well textured

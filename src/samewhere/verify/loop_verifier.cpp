@@ -5,12 +5,12 @@
 namespace samewhere::verify {
 namespace {
 
-// Of the other accepted candidates the one at another place with most inliers.
+// Of the other recognized candidates the one at another place with most inliers.
 std::optional<core::CompetingPlaceEvidence> competing_place_of(
     const core::LedgerRow& row, const std::vector<core::LedgerRow>& rows, const MapContext& map) {
   std::optional<core::CompetingPlaceEvidence> best;
   for (const core::LedgerRow& other : rows) {
-    if (!core::is_loop(other.verdict) || other.candidate.id == row.candidate.id) continue;
+    if (!is_recognized(other.verdict) || other.candidate.id == row.candidate.id) continue;
     auto found = map.measure_competing_place(row, other);
     if (!found) continue;
     found->num_inliers = core::evidence_of(other.verdict).geometry->num_inliers;
@@ -39,10 +39,19 @@ core::Evidence LoopVerifier::measure(const core::Candidate& candidate, const fea
     return evidence;
   evidence.geometry = measure_geometry(candidate, query, match, map);
   if (!evidence.geometry->match_from_query) return evidence;
-  evidence.odometry = map.measure_odometry(candidate, *evidence.geometry->match_from_query);
+  return measured_again(candidate, std::move(evidence), map);
+}
+
+core::Evidence LoopVerifier::measured_again(const core::Candidate& candidate,
+                                            core::Evidence evidence, const MapContext& map) const {
+  const core::Sim3& match_from_query = *evidence.geometry->match_from_query;
+  evidence.odometry = map.measure_odometry(candidate, match_from_query);
+  evidence.deformation.reset();
+  if (config().method == Method::kDeformation && has_geometry(evidence, config()))
+    evidence.deformation = map.measure_deformation(candidate, match_from_query);
+  evidence.competing_loop.reset();
   if (evidence.odometry)
-    evidence.competing_loop =
-        map.measure_competing_loop(candidate, *evidence.geometry->match_from_query);
+    evidence.competing_loop = map.measure_competing_loop(candidate, match_from_query);
   return evidence;
 }
 
@@ -63,7 +72,7 @@ void LoopVerifier::compare_candidates_of_one_query(const MapContext& map, const 
                                                    std::vector<core::LedgerRow>& rows) const {
   const std::vector<core::LedgerRow> verified = rows;  // each by itself
   for (core::LedgerRow& row : rows) {
-    if (!core::is_loop(row.verdict)) continue;
+    if (!is_recognized(row.verdict)) continue;
     core::Evidence evidence = core::evidence_of(row.verdict);
     evidence.competing_place = competing_place_of(row, verified, map);
     if (evidence.competing_place) row.verdict = decide(row.candidate, evidence, history);

@@ -35,12 +35,16 @@ class LoopVerifier {
                          const features::View& match, const MapContext& map,
                          const History& history) const;
 
+  // With the odometry gate and the competing loop of this map; the geometry stays.
+  core::Evidence measured_again(const core::Candidate& candidate, core::Evidence evidence,
+                                const MapContext& map) const;
+
   core::Verdict decide(const core::Candidate& candidate, const core::Evidence& evidence,
                        const History& history) const {
     return verify::decide(candidate, evidence, history, config());
   }
 
-  // Accepted candidates at different places are competing hypotheses: the verdict on each may
+  // Recognized candidates at different places are competing hypotheses: the verdict on each may
   // become ambiguous. Rows of one query.
   void compare_candidates_of_one_query(const MapContext& map, const History& history,
                                        std::vector<core::LedgerRow>& rows) const;

@@ -35,6 +35,13 @@ class MapContext {
   virtual std::optional<CandidateViews> views_with_landmark_depths(
       const core::Candidate& candidate) const = 0;
 
+  // The causes of the loops that the map has, in the order of closing. Empty without a map.
+  virtual std::vector<core::CandidateId> loops() const = 0;
+
+  // How much the pose graph bends if the candidate is added. Nothing without a map.
+  virtual std::optional<core::DeformationEvidence> measure_deformation(
+      const core::Candidate& candidate, const core::Sim3& match_from_query) const = 0;
+
   // Odometry gate and competing hypothesis of an earlier loop for the candidate's measured pose.
   // Nothing without odometry, or without an earlier loop.
   virtual std::optional<core::OdometryEvidence> measure_odometry(
@@ -56,6 +63,11 @@ class WithoutMap : public MapContext {
   bool are_one_place(core::FrameId a, core::FrameId b) const override { return a == b; }
   std::optional<CandidateViews> views_with_landmark_depths(
       const core::Candidate& /*candidate*/) const override {
+    return std::nullopt;
+  }
+  std::vector<core::CandidateId> loops() const override { return {}; }
+  std::optional<core::DeformationEvidence> measure_deformation(
+      const core::Candidate& /*candidate*/, const core::Sim3& /*match_from_query*/) const override {
     return std::nullopt;
   }
   std::optional<core::OdometryEvidence> measure_odometry(

@@ -1,15 +1,33 @@
-#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <samewhere/verify/drift_path.hpp>
+#include <samewhere/verify/look_alike.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/odometry_chain.hpp>
 
 namespace samewhere::verify {
+namespace {
+
+double least_certain_sigma_m(const core::Matrix6d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_position(covariance.topLeftCorner<3, 3>(),
+                                                                   Eigen::EigenvaluesOnly);
+  return std::sqrt(of_position.eigenvalues().maxCoeff());
+}
+
+}  // namespace
 
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config) {
   const core::Rigid3 known =
       inverse(world_from_body(map, claim.match)) * world_from_body(map, claim.query);
   const core::Vector6d correction = difference(known, claim.match_from_query);
+  const double distance_m = is_without_depth(map) ? config.min_look_alike_distance_without_depth
+                                                  : config.min_look_alike_distance_m;
   core::OdometryEvidence evidence;
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
@@ -18,6 +36,18 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
     const core::Vector6d error = difference(expected.a_from_b, claim.match_from_query);
     const core::Matrix6d covariance = expected.covariance + loop_information(config).inverse();
     evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
+    evidence.sigma_m = least_certain_sigma_m(covariance);
+    evidence.look_alike_gain = look_alike_gain(error, covariance, distance_m);
+  }
+  if (evidence.mahalanobis_squared > config.max_odometry_chi_square || map.loops.empty() ||
+      is_without_depth(map))
+    return evidence;
+  if (const auto drift = covariance_with_loops(map, claim.match, claim.query)) {
+    const core::Matrix6d covariance = *drift + loop_information(config).inverse();
+    evidence.mahalanobis_squared_with_loops = correction.dot(covariance.llt().solve(correction));
+    evidence.look_alike_gain_with_loops = look_alike_gain(correction, covariance, distance_m);
+    evidence.sigma_m = std::min(evidence.sigma_m.value_or(std::numeric_limits<double>::infinity()),
+                                least_certain_sigma_m(covariance));
   }
   return evidence;
 }

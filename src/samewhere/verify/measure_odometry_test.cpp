@@ -142,6 +142,53 @@ scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres)
   return claim(query, 3, match_from_query);
 }
 
+TEST(MeasureOdometry, TellsAPlaceFromALookAlikeAfterAShortChainOnly) {
+  const auto after = [&](int steps) {
+    return measure_odometry(corridor(steps + 1),
+                            claim(steps, 0, {Eigen::Quaterniond::Identity(), {0, 0, 1.0 * steps}}),
+                            {}, {});
+  };
+  ASSERT_TRUE(after(3).look_alike_gain && after(60).look_alike_gain);
+  EXPECT_GT(*after(3).look_alike_gain, Config{}.min_look_alike_gain);
+  EXPECT_LT(*after(60).look_alike_gain, Config{}.min_look_alike_gain);
+  EXPECT_GT(*after(60).sigma_m, 2.0 * *after(3).sigma_m);
+  EXPECT_FALSE(after(60).look_alike_gain_with_loops) << "there are none";
+}
+
+TEST(MeasureOdometry, EarlierLoopsTakeDriftOutOfTheGate) {
+  scene::MapVersion map = corridor(60);
+  const scene::LoopEdge agreed = claim(58, 1, {Eigen::Quaterniond::Identity(), {0, 0, 57}});
+  const auto before = measure_odometry(map, agreed, {}, {});
+  scene::Edit edit;
+  edit.loops.push_back(claim(57, 0, {Eigen::Quaterniond::Identity(), {0, 0, 57}}));
+  edit.loops.back().information = loop_information({});
+  map = apply(map, edit);
+  const auto after = measure_odometry(map, agreed, {}, {});
+  ASSERT_TRUE(after.look_alike_gain_with_loops && after.mahalanobis_squared_with_loops);
+  EXPECT_EQ(after.look_alike_gain, before.look_alike_gain) << "odometry alone knows no loop";
+  EXPECT_GT(*after.look_alike_gain_with_loops, Config{}.min_look_alike_gain);
+  EXPECT_NEAR(*after.mahalanobis_squared_with_loops, 0.0, 1e-9);
+  EXPECT_LT(*after.sigma_m, 0.5 * *before.sigma_m);
+  // what lies between both ends of the loop was not measured again
+  const auto halfway =
+      measure_odometry(map, claim(58, 29, {Eigen::Quaterniond::Identity(), {0, 0, 29}}), {}, {});
+  EXPECT_LT(*halfway.look_alike_gain_with_loops, *after.look_alike_gain_with_loops);
+}
+
+TEST(MeasureOdometry, LoopsJoinWhatOdometryDoesNot) {
+  scene::MapVersion map = corridor(3);
+  scene::Edit edit;
+  edit.keyframes.resize(1);
+  edit.keyframes[0].id = core::KeyframeId(3);
+  map = apply(map, edit);
+  EXPECT_FALSE(measure_odometry(map, claim(3, 0, {}), {}, {}).look_alike_gain);
+  scene::Edit joined;
+  joined.loops.push_back(claim(3, 1, {Eigen::Quaterniond::Identity(), {0, 0, -1}}));
+  joined.loops.back().information = loop_information({});
+  map = apply(map, joined);
+  EXPECT_TRUE(measure_odometry(map, claim(3, 0, {}), {}, {}).look_alike_gain_with_loops);
+}
+
 TEST(MeasureCompetingPlace, TwoClaimsShowTwoPlacesIfOdometryKeepsTheirMatchesApart) {
   const scene::MapVersion map = corridor(40);
   const core::Rigid3 here;

@@ -126,7 +126,7 @@ std::vector<core::LedgerRow> PendingCandidates::settle_until(int last_view_rejec
     evidence.num_inliers = sequence.num_inliers;
     evidence.is_over = evidence.query_view <= last_view_rejected;
     core::Verdict verdict = decide(pending.candidate, pending.evidence, {}, config_);
-    if (std::holds_alternative<core::Ambiguous>(verdict))
+    if (is_pending(verdict))
       undecided.push_back(pending);
     else
       rows.push_back({pending.candidate, std::move(verdict)});

@@ -13,6 +13,7 @@ namespace {
 
 Config few_views() {
   Config config;
+  config.prior = Prior::kUnique;
   config.require_pose = false;
   config.min_views = 4;
   config.max_pending_views = 6;
@@ -46,6 +47,20 @@ std::vector<std::string> told(const std::vector<core::LedgerRow>& rows) {
 }
 
 using Told = std::vector<std::string>;
+
+TEST(PendingCandidates, WithLookAlikePlacesALongSequenceStaysAmbiguous) {
+  Config config = few_views();
+  config.prior = Prior::kRepetitive;
+  PendingCandidates pending(config);
+  for (int i = 0; i < 4; ++i) add(pending, 50 + i, 10 + i);
+  const auto rows = pending.settle(53);
+  ASSERT_EQ(rows.size(), 4U) << "it is decided, nothing is pending";
+  for (const auto& row : rows) {
+    EXPECT_EQ(core::name_of(row.verdict), "AMBIGUOUS");
+    EXPECT_EQ(core::stage_of(row.verdict), "evidence");
+  }
+  EXPECT_TRUE(pending.settle_all().empty());
+}
 
 TEST(PendingCandidates, AllOfASequenceAreAcceptedOnceItIsLongEnough) {
   PendingCandidates pending(few_views());

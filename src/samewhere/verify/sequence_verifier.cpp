@@ -23,9 +23,7 @@ void SequenceVerifier::number(const core::Candidate& candidate, core::Evidence& 
 void SequenceVerifier::record(const core::LedgerRow& row) {
   if (!may_need_sequences(config_)) return;
   recorded_.insert({row.candidate.query, row.candidate.match});
-  const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
-  if (ambiguous != nullptr && ambiguous->stage == core::Refusal::kSequence)
-    pending_.add(row.candidate, ambiguous->evidence);
+  if (is_pending(row.verdict)) pending_.add(row.candidate, core::evidence_of(row.verdict));
 }
 
 std::vector<core::Candidate> SequenceVerifier::predict(const core::Descriptor& descriptor) {

@@ -110,7 +110,11 @@ core::Evidence good_evidence() {
                                              .overlap_ratio = 0.8,
                                              .reprojection_rmse_px = 1.0,
                                              .match_from_query = core::Sim3{}};
-  evidence.odometry = core::OdometryEvidence{0.1, 0.01, 2.0};
+  evidence.odometry = core::OdometryEvidence{.correction_m = 0.1,
+                                             .correction_rad = 0.01,
+                                             .mahalanobis_squared = 2.0,
+                                             .sigma_m = 0.2,
+                                             .look_alike_gain = 200.0};
   return evidence;
 }
 
@@ -156,15 +160,57 @@ TEST(Decide, WithRequirePoseInliersAloneAreNoLoop) {
   evidence.geometry->match_from_query.reset();
   evidence.odometry.reset();
   EXPECT_EQ(stage(evidence, {}), "pose");
-  EXPECT_EQ(stage(evidence, {.require_pose = false, .min_views = 1}), "accepted");
+  EXPECT_EQ(stage(evidence, {.prior = Prior::kUnique, .require_pose = false, .min_views = 1}),
+            "accepted");
+}
+
+TEST(Decide, AppearanceAloneIsAmbiguousUnlessNoTwoPlacesLookAlike) {
+  core::Evidence evidence = good_evidence();
+  evidence.geometry->num_inliers = 1000;
+  evidence.odometry = core::OdometryEvidence{};  // does not join the two
+  const auto verdict = decide(candidate(100, 0), evidence, {}, {});
+  EXPECT_EQ(core::name_of(verdict), "AMBIGUOUS");
+  EXPECT_EQ(core::stage_of(verdict), "evidence");
+  EXPECT_EQ(core::reason_of(verdict), "appearance alone: cannot be told from a look-alike place");
+  EXPECT_TRUE(is_recognized(verdict));
+  EXPECT_EQ(stage(evidence, {.prior = Prior::kUnique}), "accepted");
+  evidence.odometry.reset();
+  EXPECT_EQ(stage(evidence, {}), "evidence");
+}
+
+TEST(Decide, OdometryOrEarlierLoopsMustTellThePlaceFromALookAlike) {
+  const Config config;
+  core::Evidence evidence = good_evidence();
+  evidence.odometry->look_alike_gain = config.min_look_alike_gain - 0.1;
+  EXPECT_EQ(stage(evidence, config), "evidence");
+  EXPECT_EQ(stage(evidence, {.prior = Prior::kUnique}), "accepted");
+  evidence.odometry->look_alike_gain_with_loops = config.min_look_alike_gain + 0.1;
+  evidence.odometry->mahalanobis_squared_with_loops = 3.0;
+  EXPECT_EQ(stage(evidence, config), "accepted");
+  evidence.odometry->mahalanobis_squared_with_loops = config.max_competing_chi_square + 1.0;
+  EXPECT_EQ(stage(evidence, config), "competing");
+}
+
+TEST(Decide, ByDeformationOnlyTheBendOfTheTrajectoryCounts) {
+  const Config config{.method = Method::kDeformation, .max_deformation_ratio = 0.02};
+  core::Evidence evidence = good_evidence();
+  evidence.odometry->mahalanobis_squared = 2.0 * config.max_odometry_chi_square;
+  evidence.deformation = core::DeformationEvidence{.rmse_m = 1.9, .path_m = 100.0};
+  EXPECT_EQ(stage(evidence, config), "accepted");
+  evidence.deformation->rmse_m = 2.1;
+  EXPECT_EQ(stage(evidence, config), "deformation");
+  evidence.geometry->num_inliers = 3;
+  EXPECT_EQ(stage(evidence, config), "inliers");
 }
 
 TEST(Decide, WithoutAPoseTheSequenceDecides) {
-  const Config alone{.require_pose = false};
+  const Config alone{.prior = Prior::kUnique, .require_pose = false};
   core::Evidence evidence = good_evidence();
+  evidence.geometry->num_inliers = alone.min_inliers;
   EXPECT_EQ(stage(evidence, alone), "accepted") << "both views find the same pose";
   evidence.geometry->match_from_query.reset();
   evidence.odometry.reset();
+  --evidence.geometry->num_inliers;
   EXPECT_EQ(stage(evidence, alone), "sequence");
   evidence.sequence = core::SequenceEvidence{.num_views = alone.min_views - 1};
   const auto waits = decide(candidate(100, 0), evidence, {}, alone);
@@ -173,6 +219,8 @@ TEST(Decide, WithoutAPoseTheSequenceDecides) {
             std::string::npos);
   evidence.sequence->is_over = true;
   EXPECT_EQ(stage(evidence, alone), "sequence");
+  ++evidence.geometry->num_inliers;
+  EXPECT_EQ(stage(evidence, alone), "accepted") << "enough of its own";
   evidence.sequence->num_views = alone.min_views;
   EXPECT_EQ(stage(evidence, alone), "accepted");
   // of each view less is asked, for it does not speak alone

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include <samewhere/core/ids.hpp>
+#include <samewhere/core/rigid3.hpp>
+#include <samewhere/scene/map_version.hpp>
+
+namespace samewhere::verify {
+
+// Covariance of the pose of `end` in `begin`, [m; rad], along the path of odometry and loop edges
+// with the least drift: what earlier loops have taken out of the drift. An upper bound of the
+// marginal covariance of the pose graph, since other paths add information. Nothing if no path
+// joins the two. With depth only.
+std::optional<core::Matrix6d> covariance_with_loops(const scene::MapVersion& map,
+                                                    core::KeyframeId begin, core::KeyframeId end);
+
+}  // namespace samewhere::verify
