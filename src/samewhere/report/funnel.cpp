@@ -33,6 +33,8 @@ Funnel funnel(const core::Ledger& ledger) {
   }
   int num_arrived = result.num_candidates;
   for (const core::Refusal stage : core::kAllRefusals) {
+    // a check of verify.method deformation alone
+    if (stage == core::Refusal::kDeformation && num_rejected[stage] == 0) continue;
     result.rows.push_back({stage, num_arrived, num_rejected[stage]});
     num_arrived -= num_rejected[stage];
   }

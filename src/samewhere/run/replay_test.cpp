@@ -67,6 +67,7 @@ TEST(Replay, ASequenceIsCountedAgainFromCandidatesThatPassNow) {
   few.prior = verify::Prior::kUnique;
   few.require_pose = false;
   few.min_views = 3;
+  few.min_inliers = 70;  // of a view alone
   core::Ledger ledger;
   for (std::uint64_t id = 0; id < 4; ++id) {
     core::Evidence alone = evidence(id == 1 ? 25 : 60);

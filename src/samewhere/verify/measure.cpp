@@ -13,6 +13,7 @@
 #include <samewhere/geometry/pnp.hpp>
 #include <samewhere/geometry/two_view.hpp>
 #include <samewhere/optimize/motion_only.hpp>
+#include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/epipolar.hpp>
 #include <samewhere/verify/measure.hpp>
 #include <samewhere/verify/overlap.hpp>
@@ -236,8 +237,13 @@ GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& 
       match_pair(match.features->descriptors, query.features->descriptors, settings.features);
   const bool can_have_pose =
       query.rig->is_calibrated() && match.rig->is_calibrated() && has_depth(match);
-  if (can_have_pose) return measure_both_ways(query, match, matches, settings, random);
-  return measure_epipolar(query, match, matches, settings.verify, random);
+  GeometryEvidence by_depth;
+  if (can_have_pose) by_depth = measure_both_ways(query, match, matches, settings, random);
+  const bool is_without_map = may_need_sequences(settings.verify);
+  const bool is_enough = has_geometry({.geometry = by_depth}, settings.verify);
+  if (can_have_pose && (is_enough || !is_without_map)) return by_depth;
+  GeometryEvidence by_pixels = measure_epipolar(query, match, matches, settings.verify, random);
+  return can_have_pose && by_pixels.num_inliers <= by_depth.num_inliers ? by_depth : by_pixels;
 }
 
 }  // namespace samewhere::verify

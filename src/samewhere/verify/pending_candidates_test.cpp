@@ -85,7 +85,8 @@ TEST(PendingCandidates, ACandidateWithoutASequenceIsRejectedInTheEnd) {
   const auto rows = pending.settle(56);
   EXPECT_EQ(told(rows), Told{"50-10 NOT"});
   EXPECT_EQ(core::stage_of(rows.at(0).verdict), "sequence");
-  EXPECT_EQ(core::reason_of(rows.at(0).verdict), "only 2 consecutive views match, 4 needed");
+  EXPECT_EQ(core::reason_of(rows.at(0).verdict),
+            "only 2 consecutive views match, 4 needed, or 40 inliers");
 }
 
 TEST(PendingCandidates, PredictedCandidatesDoNotLengthenASequence) {

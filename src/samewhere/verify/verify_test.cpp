@@ -74,6 +74,31 @@ TEST(MeasureGeometry, BetweenViewsOfTwoScalesItFindsHowMuchLongerOneIs) {
   EXPECT_LT(*evidence.pose_difference_m, 0.03);
 }
 
+// Depth reaches few features only.
+features::View with_little_depth(features::View view) {
+  auto features = std::make_shared<features::Features>(*view.features);
+  for (std::size_t i = 0; i < features->depth_m.size(); ++i)
+    if (i % 8 != 0) features->depth_m[i] = 0.0F;
+  view.features = std::move(features);
+  return view;
+}
+
+TEST(MeasureGeometry, InRecognitionAloneLittleDepthIsNoWorseThanNone) {
+  const features::TestWorld world = features::test_world(1);
+  const features::View query = with_little_depth(features::test_view(world, 9, kMoved));
+  const features::View match = with_little_depth(features::test_view(world, 0, {}));
+  MeasureSettings settings;
+  const auto with_map = measure_geometry(candidate(9, 0), query, match, settings);
+  EXPECT_TRUE(with_map.match_from_query) << "SLAM needs the pose";
+  settings.verify.require_pose = false;
+  settings.verify.min_inliers = with_map.num_inliers + 1;
+  const auto alone = measure_geometry(candidate(9, 0), query, match, settings);
+  EXPECT_FALSE(alone.match_from_query);
+  EXPECT_GT(alone.num_inliers, 2 * with_map.num_inliers);
+  settings.verify.min_inliers = with_map.num_inliers;
+  EXPECT_TRUE(measure_geometry(candidate(9, 0), query, match, settings).match_from_query);
+}
+
 TEST(MeasureGeometry, TwoPlacesHaveFewInliers) {
   const auto evidence =
       measure_geometry(candidate(9, 0), features::test_view(features::test_world(1), 9, {}),
