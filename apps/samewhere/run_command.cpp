@@ -25,6 +25,7 @@
 #include <samewhere/report/write.hpp>
 #include <samewhere/run/open_source.hpp>
 #include <samewhere/run/run.hpp>
+#include <samewhere/run/run_odometry.hpp>
 #include <samewhere/run/self_calibration.hpp>
 
 namespace samewhere::app {
@@ -39,6 +40,7 @@ struct RunCommand {
   bool localize = false;  // and leave it as it is
   std::string camera;
   double fov_deg = 0.0;  // run only
+  std::string odometry;  // run only
   bool is_realtime = false;
   bool is_forced = false;  // may replace the results of an earlier run
   ConfigOptions config;
@@ -146,7 +148,13 @@ pipeline::Config config_of(const RunCommand& command, Work work) {
   if (!command.camera.empty()) config.input.camera = command.camera;
   if (command.fov_deg > 0.0) config.input.fov_deg = command.fov_deg;
   if (!config.input.camera.empty()) config.input.camera = run::absolute_source(config.input.camera);
-  return config;
+  if (!command.odometry.empty()) config.odometry.file = command.odometry;
+  if (config.odometry.is_used() && work == Work::kRecognition) {
+    throw core::InputError(
+        "odometry.file: `samewhere loops` estimates no poses; expected `samewhere run`");
+  }
+  if (config.odometry.is_used()) config.odometry.file = run::absolute_source(config.odometry.file);
+  return run::with_odometry_sensor(std::move(config));
 }
 
 // At the first good frame. Before, Ctrl-C ends the process at once: there is nothing to finish.
@@ -238,6 +246,13 @@ void add_map_options(CLI::App& sub, RunCommand& command) {
   sub.add_flag("--localize", command.localize, "do not extend the map of --map")->needs(map);
 }
 
+void add_odometry_option(CLI::App& sub, RunCommand& command) {
+  sub.add_option("--odometry", command.odometry,
+                 "odometry of the body: a file of lines `stamp tx ty tz qx qy qz qw`, with or "
+                 "without covariances; poses are taken from it and corrected by loops. "
+                 "odometry.sensor names its drift");
+}
+
 CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, Work work,
                              int& exit_code) {
   auto command = std::make_shared<RunCommand>();
@@ -269,6 +284,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
       "also measure candidates that verify.min_similarity or verify.pause_frames reject, for "
       "`ledger RUN replay`");
   if (work == Work::kSlam) add_fov_option(*sub, *command);
+  if (work == Work::kSlam) add_odometry_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;
@@ -288,6 +304,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "  samewhere run walk.mp4 --camera camera.txt         a video\n"
           "  samewhere run walk.mp4 --camera camera.txt --realtime  in real time, as a live "
           "camera\n"
+          "  samewhere run drive --odometry wheels.tum --set odometry.sensor=wheel  own odometry\n"
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
           "  samewhere run flat --prior unique                  no two places look alike: "
           "appearance accepts\n"

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +13,8 @@
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/terminal.hpp>
+#include <samewhere/core/tum_file.hpp>
+#include <samewhere/evaluate/degraded_odometry.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/run/open_source.hpp>
 #include <samewhere/twin/front/contact_sheet.hpp>
@@ -28,8 +31,15 @@ struct TwinCommand {
   ConfigOptions config;
   std::string sheet;
   std::string similarity_sheet;
+  std::string odometry;
+  std::string degrade = "2%";
+  std::uint64_t odometry_seed = 0;
   bool is_list = false;
 };
+
+bool writes_folder_or_sheet(const TwinCommand& command) {
+  return !command.out.empty() || !command.sheet.empty() || !command.similarity_sheet.empty();
+}
 
 void print_presets() {
   std::size_t width = 0;
@@ -75,9 +85,10 @@ void check(const TwinCommand& command) {
   if (command.source.empty()) {
     throw core::InputError("twin: no building was named; expected twin:PRESET or --list");
   }
-  if (command.out.empty() && !has_sheet(command)) {
+  if (!writes_folder_or_sheet(command) && command.odometry.empty()) {
     throw core::InputError(
-        "twin: no folder was named; expected --out DIR (must not exist) or --sheet FILE.jpg");
+        "twin: no folder was named; expected --out DIR (must not exist), --sheet FILE.jpg or "
+        "--odometry FILE.tum");
   }
   if (command.format != "tum" && command.format != "euroc") {
     throw core::InputError(fmt::format("--format {}: expected one of: tum, euroc", command.format));
@@ -112,11 +123,40 @@ void write_walk(const TwinCommand& command, const pipeline::Config& config) {
   write_sheets(command, *walk, config.twin);
 }
 
+// The true poses of the body: of a trajectory file those that it has.
+core::Trajectory true_body_poses(const pipeline::Config& config) {
+  const std::filesystem::path file = config.source;
+  if (file.extension() == ".tum") return core::read_tum(file);
+  const auto source = run::open_source(config);
+  core::Trajectory poses = source->true_trajectory();
+  if (poses.empty()) {
+    throw core::InputError(config.source +
+                           ": has no true trajectory; expected a recording with ground truth or a "
+                           "trajectory FILE.tum");
+  }
+  const auto frame = source->next();
+  if (!frame) throw core::InputError(config.source + ": gives no frame");
+  const core::Rigid3 camera_from_body = inverse(frame->rig->body_from_told_camera());
+  for (core::StampedPose& pose : poses)
+    pose.world_from_camera = pose.world_from_camera * camera_from_body;
+  return poses;
+}
+
+void write_odometry(const TwinCommand& command, const pipeline::Config& config) {
+  const evaluate::Degradation degradation = evaluate::degradation_of(command.degrade);
+  const core::Trajectory rows =
+      evaluate::degraded(true_body_poses(config), degradation, command.odometry_seed);
+  core::write_file(command.odometry, core::tum_text(rows));
+  core::print("{}: {} rows of odometry, {}\n", command.odometry, rows.size(), command.degrade);
+}
+
 void write(const TwinCommand& command) {
   check(command);
   core::catch_interrupts();
   pipeline::Config config = load(command.config);
   config.source = run::absolute_source(command.source);
+  if (!command.odometry.empty()) write_odometry(command, config);
+  if (!writes_folder_or_sheet(command)) return;
   if (twin::is_twin_spec(config.source)) {
     write_walk(command, config);
     return;
@@ -157,6 +197,17 @@ void add_twin_command(CLI::App& app) {
   sub->add_option("--similarity-sheet", command->similarity_sheet,
                   "JPEG file with a place and its look-alike at similarity 0, 0.5, 0.9 and 1, "
                   "regardless of SOURCE");
+  CLI::Option* odometry = sub->add_option("--odometry", command->odometry,
+                                          "write odometry with known errors for `run --odometry`; "
+                                          "SOURCE may be a trajectory FILE.tum, too");
+  sub->add_option("--degrade", command->degrade,
+                  "its errors: a share of the distance (5%), heading drift (1deg/m), slip, outage, "
+                  "lift, or several joined by +")
+      ->capture_default_str()
+      ->needs(odometry);
+  sub->add_option("--odometry-seed", command->odometry_seed, "seed of its errors")
+      ->capture_default_str()
+      ->needs(odometry);
   const CLI::Option* list =
       sub->add_flag("--list", command->is_list, "print the presets, one per line");
   add_config_options(*sub, command->config);
@@ -170,6 +221,7 @@ void add_twin_command(CLI::App& app) {
       "  samewhere twin 'twin:hotel?seed=3&similarity=0.9' --out hotel --format tum\n"
       "  samewhere twin 'twin:mirror?camera=stereo' --out mirror --format euroc\n"
       "  samewhere twin 'twin:warehouse?people=5' --sheet warehouse.jpg\n"
+      "  samewhere twin twin:office-loop --odometry poor.tum --degrade 5%+slip\n"
       "  samewhere twin twin:office-loop --out short --set twin.num_frames=100");
   sub->callback([command, sub, list] {
     if (command->is_list) {

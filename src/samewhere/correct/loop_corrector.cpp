@@ -106,7 +106,7 @@ bool is_last(const std::vector<OutlierLoop>& outliers, core::CandidateId cause) 
 
 optimize::PoseGraph pose_graph_of(const MapVersion& map, const optimize::Config& config) {
   optimize::PoseGraph graph;
-  if (is_without_depth(map)) graph.log_scales.assign(map.keyframes.size(), 0.0);
+  if (has_scale_drift(map)) graph.log_scales.assign(map.keyframes.size(), 0.0);
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
     const scene::Keyframe& keyframe = map.keyframes[i];
     graph.world_from_node.push_back(keyframe.world_from_body);

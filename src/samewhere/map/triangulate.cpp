@@ -155,6 +155,26 @@ class Pair {
   core::Rigid3 second_from_first_;
 };
 
+// The most covisible keyframes. Without depth and with metric odometry also the last before this
+// one: until they share landmarks, nothing else makes them neighbours.
+std::vector<core::KeyframeId> neighbours_of(const scene::MapVersion& map, core::KeyframeId keyframe,
+                                            const Config& config) {
+  std::vector<core::KeyframeId> neighbours;
+  const auto num_wanted = static_cast<std::size_t>(config.search_keyframes);
+  for (const auto& covisible : covisible_keyframes(map, keyframe)) {
+    if (covisible.num_shared < config.min_shared || neighbours.size() == num_wanted) break;
+    neighbours.push_back(covisible.keyframe);
+  }
+  if (!map.has_metric_odometry || !is_without_depth(map)) return neighbours;
+  auto parent = map.at(keyframe).odometry;
+  for (; parent && neighbours.size() < num_wanted; parent = map.at(parent->parent).odometry) {
+    const bool is_new =
+        std::find(neighbours.begin(), neighbours.end(), parent->parent) == neighbours.end();
+    if (is_new && is_live(map.at(parent->parent))) neighbours.push_back(parent->parent);
+  }
+  return neighbours;
+}
+
 }  // namespace
 
 scene::Edit triangulate_landmarks(const scene::MapVersion& map, core::KeyframeId keyframe,
@@ -162,11 +182,8 @@ scene::Edit triangulate_landmarks(const scene::MapVersion& map, core::KeyframeId
   scene::Edit edit;
   const Keyframe& second = map.at(keyframe);
   std::vector<int> free = free_features(second, false);
-  int num_searched = 0;
-  for (const auto& covisible : covisible_keyframes(map, keyframe)) {
-    if (covisible.num_shared < config.min_shared || num_searched++ == config.search_keyframes)
-      break;
-    const Keyframe& first = map.at(covisible.keyframe);
+  for (const core::KeyframeId neighbour : neighbours_of(map, keyframe, config)) {
+    const Keyframe& first = map.at(neighbour);
     const Pair pair(map, first, second, config, features);
     for (const auto& match : pair.matches(free_features(first, true), free)) {
       const auto in_camera = pair.point(match);

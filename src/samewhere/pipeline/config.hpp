@@ -10,6 +10,7 @@
 #include <samewhere/input/config.hpp>
 #include <samewhere/map/config.hpp>
 #include <samewhere/optimize/config.hpp>
+#include <samewhere/pipeline/odometry_config.hpp>
 #include <samewhere/retrieve/config.hpp>
 #include <samewhere/track/config.hpp>
 #include <samewhere/twin/front/config.hpp>
@@ -24,6 +25,7 @@ struct Config {
   bool threads = true;
   bool close_loops = true;
   input::Config input;
+  OdometryConfig odometry;
   twin::Config twin;
   features::Config features;
   describe::Config describe;
@@ -50,6 +52,9 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help = "`run`: accepted loops correct the map; false: loop closing is off, "
                  "relocalization is not"});
   visit("input", config.input, {.help = "Reading recordings"});
+  visit("odometry", config.odometry,
+        {.help = "Odometry from a file (decision 033)",
+         .is_used = config.source.empty() || config.odometry.is_used()});
   const bool renders = config.source.empty() || config.source.starts_with("twin:");
   visit("twin", config.twin, {.help = "The twin building", .is_used = renders});
   visit("features", config.features, {.help = "ORB features and their matches"});

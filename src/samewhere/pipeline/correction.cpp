@@ -4,13 +4,15 @@
 
 #include <samewhere/map/fuse.hpp>
 #include <samewhere/pipeline/correction.hpp>
+#include <samewhere/pipeline/soft_odometry.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
 
 namespace samewhere::pipeline {
 
 Correction with_loop(const scene::MapVersion& map, const scene::LoopEdge& loop,
                      const Config& config, core::CandidateId overruled) {
-  correct::Closing closing = correct::close_loop(map, loop, config.optimize, overruled);
+  correct::Closing closing =
+      correct::close_loop(with_soft_odometry(map, config, loop), loop, config.optimize, overruled);
   scene::MapVersion corrected = apply(map, closing.edit);
   if (!closing.withdrawn.empty()) corrected = with_places_parted(map, std::move(corrected), config);
   for (const auto& accepted : closing.accepted)

@@ -3,13 +3,16 @@
 #include <samewhere/core/match_from_query.hpp>
 #include <samewhere/correct/deformation.hpp>
 #include <samewhere/pipeline/map_context.hpp>
+#include <samewhere/pipeline/odometry_drift.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_competing.hpp>
 
 namespace samewhere::pipeline {
 
 verify::ScaleErrors scale_errors(const Config& config) {
-  return {.creep = config.optimize.odometry_scale_sigma, .loop = config.optimize.loop_scale_sigma};
+  return {.creep = config.optimize.odometry_scale_sigma,
+          .loop = config.optimize.loop_scale_sigma,
+          .bias = systematic_drift(config.odometry)};
 }
 
 MapVersionContext::MapVersionContext(const scene::MapVersion& map, const KeyframeOf& keyframe_of,

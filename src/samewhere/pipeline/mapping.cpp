@@ -41,6 +41,7 @@ void Mapping::take(const ToMapping& message, const MappingLink::Reply& reply) {
 
 void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
   give_up_map();
+  map_.has_metric_odometry = config_.odometry.is_used();
   apply(map::start_map(map_, message.view, core::Rigid3{}));
   reply({.map = map_, .places = {}});
   ask_for_loops(message.image);
@@ -115,7 +116,7 @@ void Mapping::connect_newest() {
 
 void Mapping::refine_newest() {
   const core::KeyframeId newest = map_.keyframes.back().id;
-  {
+  if (!config_.odometry.is_used()) {  // else poses are those of the file
     const core::ScopedTimer timer(timings_, "bundle");
     apply(map::bundle_around(map_, newest, {config_.map, config_.features, config_.optimize}));
   }
@@ -160,7 +161,7 @@ bool Mapping::correct(const AcceptedLoop& heard) {
   const correct::Closing& closing = correction.closing;
   record_changes(closing, *loop);
   map_ = correction.map;
-  if (!closing.accepted.empty()) full_bundles_.note_correction(map_);
+  if (!closing.accepted.empty() && !config_.odometry.is_used()) full_bundles_.note_correction(map_);
   if (!closing.withdrawn.empty()) withdrawn_at_ = map_.number;
   return !closing.withdrawn.empty();
 }

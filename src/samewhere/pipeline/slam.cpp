@@ -25,6 +25,12 @@ std::vector<core::KeyframeId> edges_before(const scene::MapVersion& map, core::K
   return edges;
 }
 
+// A known map goes on by visual odometry.
+Config with_visual_odometry(Config config) {
+  config.odometry.file.clear();
+  return config;
+}
+
 geometry::UncertainPose edge_of(const scene::Keyframe& keyframe) {
   return {parent_from_keyframe(keyframe), keyframe.odometry->information.inverse()};
 }
@@ -41,9 +47,13 @@ Slam::Slam(const Config& config, DepthFrom depth_from, const SlamTestHooks& hook
     : stages_(config, hooks), tracking_(config, depth_from, stages_.link()) {}
 
 Slam::Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamTestHooks& hooks)
-    : stages_(config, known, hooks),
-      tracking_(config, known, use == Use::kLocalize, stages_.link()) {
+    : stages_(with_visual_odometry(config), known, hooks),
+      tracking_(with_visual_odometry(config), known, use == Use::kLocalize, stages_.link()) {
   core::require(!known.map.keyframes.empty(), "a known map holds a keyframe");
+}
+
+void Slam::follow(std::shared_ptr<const OdometryPath> odometry) {
+  tracking_.follow(std::move(odometry));
 }
 
 void Slam::feed(const core::Frame& frame) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ class Slam {
   Slam(const Config& config, const scene::StoredMap& known, Use use, const SlamTestHooks& hooks);
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
+
+  // Before the first frame: odometry from a file gives the poses of a new map, and predicts those
+  // in a known one. Goes with the settings `odometry`, whose file is named.
+  void follow(std::shared_ptr<const OdometryPath> odometry);
 
   // Frames are numbered from 0, in session(). Their images are shared and must not be written to.
   // Throws what a stage threw; after that no call may follow.

@@ -58,6 +58,7 @@ Tracking::Tracking(const Config& config, const scene::StoredMap& known, bool is_
                    MappingLink& mapping)
     : Tracking(config, SessionState::in_known_map(config.track, known.map.keyframes.size()),
                known.map, next_session(known), mapping) {
+  is_map_known_ = true;
   is_map_fixed_ = is_map_fixed;
 }
 
@@ -74,6 +75,11 @@ Tracking::Tracking(const Config& config, SessionState state, scene::MapVersion m
       log_(session),
       passing_(config.track.free_space),
       scale_drift_detector_(config.track.max_scale_change) {}
+
+void Tracking::follow(std::shared_ptr<const OdometryPath> odometry) {
+  core::require(log_.size() == 0, "odometry comes before the first frame");
+  odometry_.emplace(config_, std::move(odometry));
+}
 
 void Tracking::feed(const core::Frame& frame) {
   core::require(frame.id == log_.next_id(), "frames are numbered from 0, in the session that runs");
@@ -109,6 +115,7 @@ features::View Tracking::extract(const core::Frame& frame) {
 }
 
 Tracking::MaybeTracked Tracking::localize(const core::Frame& frame, const features::View& view) {
+  if (is_led_by_odometry()) return follow_odometry(frame, view);
   if (state_.is_initializing()) return initialize(frame, view);
   MaybeTracked tracked = state_.is_lost() ? relocalize(frame, view) : track_in_map(frame, view);
   if (!tracked && may_reinitialize(view)) {
@@ -128,8 +135,9 @@ Tracking::MaybeTracked Tracking::localize(const core::Frame& frame, const featur
 void Tracking::record(const core::Frame& frame, const features::View& view,
                       const MaybeTracked& tracked) {
   if (!tracked) {
-    const core::FrameStatus status =
-        state_.is_initializing() ? initialization_.waiting_status(view) : core::FrameStatus::kLost;
+    const core::FrameStatus status = state_.is_initializing() && !is_led_by_odometry()
+                                         ? initialization_.waiting_status(view)
+                                         : core::FrameStatus::kLost;
     log_.add({.frame = view.frame, .stamp_s = view.stamp_s, .status = status});
     return;
   }
@@ -140,7 +148,7 @@ void Tracking::record(const core::Frame& frame, const features::View& view,
 void Tracking::insert_keyframe(const core::Frame& frame, const MaybeTracked& tracked) {
   if (!tracked || is_map_fixed_) return;
   if (mapping_.is_keyframe_in_progress() || mapping_.is_keyframe(frame.id)) return;
-  if (map::is_worth_keeping(map_.version(), *tracked, config_.map)) {
+  if (is_worth_keeping(*tracked)) {
     send_keyframe(*tracked, frame.images[0]);
   } else if (log_.num_unsent() >= kMaxUnsentFrames) {
     mapping_.save(log_.take_unsent());
@@ -150,14 +158,35 @@ void Tracking::insert_keyframe(const core::Frame& frame, const MaybeTracked& tra
 Tracking::MaybeTracked Tracking::initialize(const core::Frame& frame, const features::View& view) {
   std::optional<InitialViews> initial = initialization_.try_view(view, frame.images[0]);
   if (!initial) return std::nullopt;
+  const scene::TrackedView tracked = begin_map(frame, view, *initial);
+  if (initialization_.is_monocular()) pose_earlier_frames(*initial);
+  return tracked;
+}
+
+scene::TrackedView Tracking::begin_map(const core::Frame& frame, const features::View& view,
+                                       InitialViews& initial) {
   discard_poses();
-  map_.set_version(mapping_.initialize(std::move(initial->message)));
+  map_.set_version(mapping_.initialize(std::move(initial.message)));
   const core::KeyframeId newest = map_.version().keyframes.back().id;
   mapping_.note_keyframe(view.frame);
   map_.set_reference(newest);
-  scene::TrackedView tracked{view, initial_pose(view, newest, initial->num_landmarks), {}, {}};
+  scene::TrackedView tracked{view, initial_pose(view, newest, initial.num_landmarks), {}, {}};
   state_.initialize({tracked, frame.depth_m, {}});
-  if (initialization_.is_monocular()) pose_earlier_frames(*initial);
+  return tracked;
+}
+
+Tracking::MaybeTracked Tracking::follow_odometry(const core::Frame& frame,
+                                                 const features::View& view) {
+  if (!odometry_->has_pose(view.stamp_s)) return std::nullopt;
+  if (state_.is_initializing()) {
+    const int num_landmarks = map::num_with_depth(view);
+    // the first keyframe says whether the camera measures depth
+    if (!initialization_.is_monocular() && num_landmarks == 0) return std::nullopt;
+    InitialViews initial{StartMap{view, frame.images[0]}, num_landmarks, {}};
+    return begin_map(frame, view, initial);
+  }
+  scene::TrackedView tracked = odometry_->track(view, map_, tracker_);
+  update_motion_model(frame, tracked);
   return tracked;
 }
 
@@ -215,10 +244,17 @@ Tracking::MaybeTracked Tracking::track_in_map(const core::Frame& frame,
   return is_better ? by_depth : best;
 }
 
+core::Rigid3 Tracking::predicted_motion(const features::View& view) const {
+  const TrackedFrame& last = *state_.last_frame();
+  const auto measured =
+      odometry_ ? odometry_->motion(last.tracked.view.stamp_s, view.stamp_s) : std::nullopt;
+  return measured.value_or(last.last_from_next);
+}
+
 Tracking::MaybeTracked Tracking::track_from_last(const features::View& view) const {
   if (!map_.has_local_map()) return std::nullopt;
   const TrackedFrame& last = *state_.last_frame();
-  const core::Rigid3 predicted = map_.reference_from(last.tracked.pose) * last.last_from_next;
+  const core::Rigid3 predicted = map_.reference_from(last.tracked.pose) * predicted_motion(view);
   const auto track = tracker_.track(view, map_.local_map(), predicted);
   if (!track) return std::nullopt;
   return map_.tracked_view(view, *track);
@@ -243,7 +279,7 @@ Tracking::MaybeTracked Tracking::track_by_depth(const core::Frame& frame,
   const auto aligned =
       track::align({*last.depth_m, camera, config.max_step_ratio},
                    {*frame.depth_m, camera, config.max_step_ratio},
-                   camera_from_body * last.last_from_next * body_from_camera, config);
+                   camera_from_body * predicted_motion(view) * body_from_camera, config);
   if (!aligned) return std::nullopt;
   const core::Rigid3 last_from_this =
       body_from_camera * aligned->earlier_from_later * camera_from_body;
@@ -280,7 +316,7 @@ void Tracking::switch_reference(scene::TrackedView& tracked) {
 
 void Tracking::check_scale(scene::TrackedView& tracked) {
   const TrackedFrame* last = state_.last_frame();
-  if (last == nullptr || !is_without_depth(map_.version())) return;
+  if (last == nullptr || !has_scale_drift(map_.version())) return;
   core::FramePose& pose = tracked.pose;
   const double step =
       (map_.world_from(pose).translation - map_.world_from(last->tracked.pose).translation).norm();
@@ -301,6 +337,11 @@ void Tracking::update_motion_model(const core::Frame& frame, const scene::Tracke
           ? core::Rigid3{}
           : inverse(map_.world_from(last->tracked.pose)) * map_.world_from(tracked.pose);
   state_.track({tracked, frame.depth_m, last_from_this});
+}
+
+bool Tracking::is_worth_keeping(const scene::TrackedView& tracked) const {
+  return is_led_by_odometry() ? odometry_->is_worth_keeping(map_.version(), tracked)
+                              : map::is_worth_keeping(map_.version(), tracked, config_.map);
 }
 
 bool Tracking::can_insert_last() const {

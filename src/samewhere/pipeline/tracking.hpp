@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <samewhere/pipeline/frame_log.hpp>
 #include <samewhere/pipeline/initialization.hpp>
 #include <samewhere/pipeline/mapping_exchange.hpp>
+#include <samewhere/pipeline/odometry_tracking.hpp>
 #include <samewhere/pipeline/passing_things.hpp>
 #include <samewhere/pipeline/relocalization.hpp>
 #include <samewhere/pipeline/session.hpp>
@@ -34,6 +36,9 @@ class Tracking {
            MappingLink& mapping);
   Tracking(const Tracking&) = delete;
   Tracking& operator=(const Tracking&) = delete;
+
+  // Before the first frame: poses are those of this odometry; in a known map it predicts them.
+  void follow(std::shared_ptr<const OdometryPath> odometry);
 
   // Frames are numbered from 0, in session(). Their images are shared and must not be written to.
   std::uint16_t session() const { return log_.session(); }
@@ -68,7 +73,13 @@ class Tracking {
   MaybeTracked initialize(const core::Frame& frame, const features::View& view);
   MaybeTracked track_in_map(const core::Frame& frame, const features::View& view);
   MaybeTracked relocalize(const core::Frame& frame, const features::View& view);
+  // localize: by odometry from a file.
+  MaybeTracked follow_odometry(const core::Frame& frame, const features::View& view);
 
+  scene::TrackedView begin_map(const core::Frame& frame, const features::View& view,
+                               InitialViews& initial);
+  // Motion since the last frame: constant velocity, or odometry from a file.
+  core::Rigid3 predicted_motion(const features::View& view) const;
   MaybeTracked track_from_last(const features::View& view) const;
   // After the local map has changed: the pose with more inliers is kept.
   void track_again(const features::View& view, MaybeTracked& best) const;
@@ -85,6 +96,9 @@ class Tracking {
   // The first view of a monocular pair, and the frames between both.
   void pose_earlier_frames(const InitialViews& initial);
 
+  // In a new map odometry from a file leads; a known map is tracked visually.
+  bool is_led_by_odometry() const { return odometry_ && !is_map_known_; }
+  bool is_worth_keeping(const scene::TrackedView& tracked) const;
   bool can_insert_last() const;
   // The newest frame becomes a keyframe. Empty image: it is no longer known.
   void send_keyframe(const scene::TrackedView& tracked, const cv::Mat& image);
@@ -92,12 +106,14 @@ class Tracking {
   void receive_map();
 
   Config config_;
+  bool is_map_known_ = false;
   bool is_map_fixed_ = false;
   core::Timings timings_;
   track::Tracker tracker_;
   SessionState state_;
   Initialization initialization_;
   Relocalization relocalization_;
+  std::optional<OdometryTracking> odometry_;  // from a file
   VisibleMap map_;
   MappingExchange mapping_;
   FrameLog log_;

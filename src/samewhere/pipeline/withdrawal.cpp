@@ -6,6 +6,7 @@
 #include <samewhere/map/local_bundle.hpp>
 #include <samewhere/map/mapper.hpp>
 #include <samewhere/map/part.hpp>
+#include <samewhere/pipeline/soft_odometry.hpp>
 #include <samewhere/pipeline/withdrawal.hpp>
 #include <samewhere/track/tracker.hpp>
 
@@ -88,15 +89,16 @@ MapVersion with_places_parted(const MapVersion& before, MapVersion after, const 
   const std::set<core::KeyframeId> changed = changed_keyframes(before, after);
   for (int round = 0; round < kRounds; ++round) {
     if (round > 0) after = seen_again(std::move(after), changed, config);
-    after = bundled(std::move(after), changed, config);
-    const scene::Edit poses = correct::solve_poses(after, config.optimize);
+    if (!config.odometry.is_used()) after = bundled(std::move(after), changed, config);
+    const scene::Edit poses =
+        correct::solve_poses(with_soft_odometry(after, config), config.optimize);
     after = apply(std::move(after), poses);
   }
   return after;
 }
 
 MapVersion without_loop(const MapVersion& map, core::CandidateId cause, const Config& config) {
-  const auto edit = correct::withdraw_loop(map, cause, config.optimize);
+  const auto edit = correct::withdraw_loop(with_soft_odometry(map, config), cause, config.optimize);
   return with_places_parted(map, apply(map, edit), config);
 }
 

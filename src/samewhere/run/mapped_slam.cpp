@@ -64,6 +64,11 @@ MappedSlam::MappedSlam(const pipeline::Config& config, pipeline::DepthFrom depth
                 keep_map);
 }
 
+void MappedSlam::follow(std::shared_ptr<const pipeline::OdometryPath> odometry) {
+  slam_->follow(std::move(odometry));
+  if (!known_) is_metric_ = true;
+}
+
 void MappedSlam::feed(core::Frame& frame) {
   frame.id = core::FrameId(frame.id.index(), slam_->session());
   if (known_) take_known(*frame.rig);

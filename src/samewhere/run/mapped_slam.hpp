@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -38,6 +39,8 @@ class MappedSlam {
   // Of keyframes, once it is finished.
   std::map<core::FrameId, std::string> take_thumbnails() { return std::move(thumbnails_); }
 
+  // As Slam::follow(). Lengths of a new map are metric then.
+  void follow(std::shared_ptr<const pipeline::OdometryPath> odometry);
   // As Slam::feed(); the frame gets its session. Throws InputError if the known map was made with
   // other settings or another camera.
   void feed(core::Frame& frame);

@@ -109,7 +109,7 @@ scene::LoopEdge forced_edge(const MapVersion& map, const core::LedgerRow& row,
 
 MapVersion bundled(MapVersion map, const pipeline::Config& config) {
   map::BundleWindow window = map::window_of_all(map, config.map);
-  if (window.free.empty()) return map;
+  if (window.free.empty() || config.odometry.is_used()) return map;
   const scene::Edit edit =
       map::full_bundle(map, window, {config.map, config.features, config.optimize});
   return apply(std::move(map), edit);
@@ -196,6 +196,7 @@ OverriddenRun override_run(const std::filesystem::path& folder, std::size_t cand
   const std::string frames_csv = core::read_file(folder / "frames.csv");
   scene::MapFile file = scene::MapFile::open(folder / "map.sw", scene::MapAccess::kExtend);
   scene::StoredMap stored = file.load();
+  stored.map.has_metric_odometry = config.odometry.is_used();
   OverriddenMap changed =
       naming(folder, [&] { return overridden(stored, row, override_as, ledger, config); });
   OverriddenRun result{changed.rows, stored.map.loops.size(), changed.map.loops.size(),

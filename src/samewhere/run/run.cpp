@@ -24,6 +24,7 @@
 #include <samewhere/run/recognition.hpp>
 #include <samewhere/run/run.hpp>
 #include <samewhere/run/run_metrics.hpp>
+#include <samewhere/run/run_odometry.hpp>
 
 namespace samewhere::run {
 namespace {
@@ -201,6 +202,11 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   record.truth = aligned_truth(evaluation, truth);
 }
 
+void report_coverage(const RunOdometry& odometry, report::RunRecord& record) {
+  record.figures.push_back(odometry.figure());
+  if (!record.input_error) record.input_error = odometry.error();
+}
+
 // Frames whose match passes the geometric checks but neither sequence nor prior accepts it; none if
 // any loop was accepted.
 std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger, core::Refusal check) {
@@ -244,15 +250,19 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
   const pipeline::Config config = with_window_in_frames(given, source->info());
+  std::optional<RunOdometry> odometry;
+  if (config.odometry.is_used()) odometry.emplace(config, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
   const bool is_monocular = is_scale_free(source->info());
   MappedSlam mapped(
       config, is_monocular ? pipeline::DepthFrom::kMotion : pipeline::DepthFrom::kSensor, plan);
+  if (odometry) mapped.follow(odometry->path());
   const pipeline::Slam& slam = mapped.slam();
   std::vector<std::string> names;
   FrameFeed feed(*source, outcome, is_quiet);
   while (std::optional<core::Frame> frame = feed.next()) {
     const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
+    if (odometry) odometry->see(*frame);
     mapped.feed(*frame);
     names.push_back(frame->name);
     note_first_pose(slam, outcome.record);
@@ -267,6 +277,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   record_slam(slam, names, record);
   if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
   record_figures(mapped, config, plan, truth, record);
+  if (odometry) report_coverage(*odometry, record);
   feed.report();
   return outcome;
 }

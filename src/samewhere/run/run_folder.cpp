@@ -181,7 +181,8 @@ std::vector<report::Figure> evaluate_folder(const std::filesystem::path& folder,
         read_pairs(folder / "accepted.txt"), config.retrieve.window_frames};
     return figures_of(evaluate_recognition(findings, truth));
   }
-  const SlamFindings findings = read_slam_findings(folder, is_scale_free(source->info()));
+  const SlamFindings findings =
+      read_slam_findings(folder, is_scale_free(source->info()) && !config.odometry.is_used());
   if (!truth_file.empty())
     truth = with_trajectory(std::move(truth), truth_file, findings.trajectory);
   return figures_of(evaluate_slam(findings, truth));

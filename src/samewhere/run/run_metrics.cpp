@@ -55,6 +55,10 @@ std::vector<Figure> figures_of_trajectory(const SlamEvaluation& evaluation) {
   if (const auto& ate = evaluation.odometry_ate) {
     figures.push_back(figure("ATE RMSE before loop closing", "{:.4f} m", ate->rmse_m));
   }
+  if (const auto& drift = evaluation.drift_at_return) {
+    figures.push_back(figure("drift at the first return", "{:.3f} m after {:.1f} m", drift->drift_m,
+                             drift->path_m));
+  }
   if (const auto& rpe = evaluation.rpe) {
     figures.push_back(figure("rotational error over 1 s, median (RMSE)", "{:.2f} degrees ({:.2f})",
                              rpe->rotation_median_deg, rpe->rotation_rmse_deg));
@@ -109,6 +113,14 @@ bool is_rejoined(const core::FrameSpan& revisit, const evaluate::LoopCheck& relo
     return checked.truth == evaluate::LoopTruth::kTrue && checked.loop.match < revisit.first &&
            revisit.first <= checked.loop.query && checked.loop.query <= revisit.last;
   });
+}
+
+// Where the source knows its revisits, whose positions are those of its true poses.
+std::optional<double> begin_of_revisits_s(const core::Truth& truth) {
+  if (!truth.revisits || truth.revisits->empty()) return std::nullopt;
+  const auto first = static_cast<std::size_t>(truth.revisits->front().first);
+  if (first >= truth.trajectory.size()) return std::nullopt;
+  return truth.trajectory[first].stamp_s;
 }
 
 Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
@@ -185,6 +197,10 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
       findings.is_scale_free ? evaluate::Alignment::kSim3 : evaluate::Alignment::kSe3;
   evaluation.ate = evaluate::ate(truth.trajectory, findings.trajectory, alignment);
   evaluation.odometry_ate = evaluate::ate(truth.trajectory, findings.odometry, alignment);
+  if (!findings.is_scale_free) {
+    evaluation.drift_at_return = evaluate::drift_at_first_return(
+        truth.trajectory, findings.odometry, begin_of_revisits_s(truth));
+  }
   if (evaluation.ate) {
     evaluation.path_m = evaluate::path_length_m(
         truth.trajectory, findings.trajectory.front().stamp_s, findings.trajectory.back().stamp_s);

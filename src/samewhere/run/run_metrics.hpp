@@ -9,6 +9,7 @@
 #include <samewhere/core/truth.hpp>
 #include <samewhere/describe/config.hpp>
 #include <samewhere/evaluate/consistency.hpp>
+#include <samewhere/evaluate/drift_at_return.hpp>
 #include <samewhere/evaluate/loop_check.hpp>
 #include <samewhere/evaluate/precision_recall.hpp>
 #include <samewhere/evaluate/trajectory_error.hpp>
@@ -56,8 +57,9 @@ struct SlamEvaluation {
   bool is_scale_free = false;
   std::optional<evaluate::AteResult> ate;
   std::optional<evaluate::AteResult> odometry_ate;
-  double path_m = 0.0;                     // the true one, while there were poses
-  std::optional<evaluate::RpeResult> rpe;  // over 1 s
+  std::optional<evaluate::DriftAtReturn> drift_at_return;  // not if the scale is free
+  double path_m = 0.0;                                     // the true one, while there were poses
+  std::optional<evaluate::RpeResult> rpe;                  // over 1 s
   int num_candidates = 0;
   int num_of_known_map = 0;
   int num_known_places = 0;

@@ -33,7 +33,8 @@ std::optional<double> film_length_mm(const pipeline::Config& config, const core:
 // The map of the beginning of a recording, of as many keyframes as are asked for, or of all of it.
 scene::MapVersion first_map(core::Source& source, const pipeline::Config& given) {
   constexpr int kMostFrames = 3000;
-  const pipeline::Config config = with_window_in_frames(given, source.info());
+  pipeline::Config config = with_window_in_frames(given, source.info());
+  config.odometry.file.clear();
   pipeline::Slam slam(config, is_scale_free(source.info()) ? pipeline::DepthFrom::kMotion
                                                            : pipeline::DepthFrom::kSensor);
   for (int i = 0; i < kMostFrames && !core::is_interrupted(); ++i) {

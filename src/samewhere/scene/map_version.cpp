@@ -243,6 +243,10 @@ bool is_without_depth(const MapVersion& map) {
   return first.features && !has_depth(first);  // without features: a graph of poses alone
 }
 
+bool has_scale_drift(const MapVersion& map) {
+  return is_without_depth(map) && !map.has_metric_odometry;
+}
+
 const Landmark& survivor_of(const MapVersion& map, core::LandmarkId id) {
   while (map.at(id).merged_into.is_valid()) id = map.at(id).merged_into;
   return map.at(id);

@@ -115,6 +115,8 @@ struct MapVersion {
   // re-tested whenever a loop is added. Their keyframes may be culled.
   std::vector<LoopEdge> suspended_loops;
   ChunkedVector<Merge> merges;  // in the order they were made, without undone ones
+  // Lengths are metric without depth: the poses are those of odometry from a file. Not stored.
+  bool has_metric_odometry = false;
 
   const Keyframe& at(core::KeyframeId id) const { return keyframes[id.index()]; }
   const Landmark& at(core::LandmarkId id) const { return landmarks[id.index()]; }
@@ -201,9 +203,10 @@ core::Rigid3 reference_from_frame(const MapVersion& map, const core::FramePose& 
 // In the world, if the pose was measured.
 core::Rigid3 world_from_frame(const MapVersion& map, const core::FramePose& pose);
 
-// Whether lengths come from motion and have scale drift: the first keyframe has no depth
-// measurements.
+// Whether depths come from motion: the first keyframe has no depth measurements.
 bool is_without_depth(const MapVersion& map);
+// Whether lengths come from visual motion alone and have scale drift.
+bool has_scale_drift(const MapVersion& map);
 
 // The keyframe that holds a pose: itself, or the first of its odometry ancestors that is not
 // culled.

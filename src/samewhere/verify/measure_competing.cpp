@@ -44,7 +44,8 @@ struct Fit {
 
 class Odometry {
  public:
-  Odometry(const scene::MapVersion& map, const Config& config) : map_(map), config_(config) {}
+  Odometry(const scene::MapVersion& map, const SystematicDrift& bias, const Config& config)
+      : map_(map), bias_(bias), config_(config) {}
   Odometry(const Odometry&) = delete;
   Odometry& operator=(const Odometry&) = delete;
 
@@ -54,6 +55,7 @@ class Odometry {
                                  world_from_body(map_, claim.match) * claim.match_from_query;
     const core::Vector6d error = difference(chain.begin_from_end.a_from_b, claimed);
     const Eigen::LDLT<core::Matrix6d> covariance(chain.begin_from_end.covariance +
+                                                 systematic_covariance(map_, chain.path, bias_) +
                                                  loop_information(config_).inverse());
     return {error.dot(covariance.solve(error)), covariance.vectorD().array().log().sum()};
   }
@@ -66,6 +68,7 @@ class Odometry {
 
  private:
   const scene::MapVersion& map_;
+  SystematicDrift bias_;
   const Config& config_;
 };
 
@@ -106,9 +109,10 @@ Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEd
 
 // Log-likelihood ratio, times two, of the claim over the first loop that contradicts it, under
 // odometry without those loops. The larger covariance of a longer chain never counts for the claim.
-void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, const Config& config,
+void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                  const SystematicDrift& bias, const Config& config,
                   core::CompetingLoopEvidence& competing) {
-  const Odometry odometry(map, config);
+  const Odometry odometry(map, bias, config);
   const Contradiction found = contradiction_of(map, claim, odometry, config);
   if (found.first == nullptr || claim.match >= found.first->query) return;
   const auto fit_of = [&](const scene::LoopEdge& loop) {
@@ -125,10 +129,10 @@ void measure_gain(const scene::MapVersion& map, const scene::LoopEdge& claim, co
 
 // Without depth, loops have changed the scale of the odometry edges.
 bool may_compare(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                 const core::CompetingLoopEvidence& competing, const Config& config) {
-  return competing.mahalanobis_squared > config.max_competing_chi_square &&
-         !is_without_depth(map) &&
-         measure_odometry(map, claim, {}, config).mahalanobis_squared <=
+                 const core::CompetingLoopEvidence& competing, const ScaleErrors& scale,
+                 const Config& config) {
+  return competing.mahalanobis_squared > config.max_competing_chi_square && !has_scale_drift(map) &&
+         measure_odometry(map, claim, scale, config).mahalanobis_squared <=
              config.max_odometry_chi_square;
 }
 
@@ -149,7 +153,8 @@ std::optional<core::CompetingLoopEvidence> measure_competing_loop(const scene::M
                                         .apart_m = found.correction_m,
                                         .apart_rad = found.correction_rad,
                                         .mahalanobis_squared = found.mahalanobis_squared};
-  if (may_compare(map, claim, competing, config)) measure_gain(map, claim, config, competing);
+  if (may_compare(map, claim, competing, scale, config))
+    measure_gain(map, claim, scale.bias, config, competing);
   return competing;
 }
 
@@ -171,7 +176,7 @@ std::optional<core::CompetingPlaceEvidence> measure_competing_place(const scene:
   const geometry::UncertainPose claimed = geometry::compose(by_other, geometry::inverse(by_claim));
   const geometry::UncertainPose known =
       expected_end(map, *chain, std::log(other_from_claim.scale),
-                   {.creep = scale.creep, .loop = std::sqrt(2.0) * scale.loop});
+                   {.creep = scale.creep, .loop = std::sqrt(2.0) * scale.loop, .bias = scale.bias});
   const core::Vector6d error = difference(known.a_from_b, rigid_part(other_from_claim));
   const core::Matrix6d covariance = known.covariance + claimed.covariance;
   if (error.dot(covariance.llt().solve(error)) <= config.max_competing_chi_square)

@@ -26,8 +26,8 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
   const core::Rigid3 known =
       inverse(world_from_body(map, claim.match)) * world_from_body(map, claim.query);
   const core::Vector6d correction = difference(known, claim.match_from_query);
-  const double distance_m = is_without_depth(map) ? config.min_look_alike_distance_without_depth
-                                                  : config.min_look_alike_distance_m;
+  const double distance_m = has_scale_drift(map) ? config.min_look_alike_distance_without_depth
+                                                 : config.min_look_alike_distance_m;
   core::OdometryEvidence evidence;
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
@@ -40,9 +40,9 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
     evidence.look_alike_gain = look_alike_gain(error, covariance, distance_m);
   }
   if (evidence.mahalanobis_squared > config.max_odometry_chi_square || map.loops.empty() ||
-      is_without_depth(map))
+      has_scale_drift(map))
     return evidence;
-  if (const auto drift = covariance_with_loops(map, claim.match, claim.query)) {
+  if (const auto drift = covariance_with_loops(map, claim.match, claim.query, scale.bias)) {
     const core::Matrix6d covariance = *drift + loop_information(config).inverse();
     evidence.mahalanobis_squared_with_loops = correction.dot(covariance.llt().solve(correction));
     evidence.look_alike_gain_with_loops = look_alike_gain(correction, covariance, distance_m);

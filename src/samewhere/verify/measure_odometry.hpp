@@ -3,13 +3,15 @@
 #include <samewhere/core/verdict.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/verify/config.hpp>
+#include <samewhere/verify/systematic_drift.hpp>
 
 namespace samewhere::verify {
 
 // Of a camera without depth: standard deviations of the logarithm of its scale.
 struct ScaleErrors {
-  double creep = 0.01;  // from one keyframe to the next, at random
-  double loop = 0.05;   // as a loop measures it
+  double creep = 0.01;        // from one keyframe to the next, at random
+  double loop = 0.05;         // as a loop measures it
+  SystematicDrift bias = {};  // of odometry from a file, with or without depth
 };
 
 // Odometry gate: the correction of the query's pose by the loop `claim`, and its Mahalanobis

@@ -116,8 +116,8 @@ UncertainPose expected_end(const scene::MapVersion& map, const OdometryChain& ch
                            double log_scale, const ScaleErrors& scale) {
   UncertainPose expected{
       inverse(world_from_body(map, chain.begin)) * world_from_body(map, chain.end),
-      chain.begin_from_end.covariance};
-  if (!is_without_depth(map)) return expected;
+      chain.begin_from_end.covariance + systematic_covariance(map, chain.path, scale.bias)};
+  if (!has_scale_drift(map)) return expected;
   const StretchedPath path = stretched(map, chain, log_scale);
   expected.a_from_b.translation.setZero();
   for (const Eigen::Vector3d& step : path.steps) expected.a_from_b.translation += step;

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <samewhere/core/rigid3.hpp>
+#include <samewhere/geometry/uncertain_pose.hpp>
+#include <samewhere/input/odometry_file.hpp>
+#include <samewhere/pipeline/odometry_drift.hpp>
+
+namespace samewhere::pipeline {
+
+// Whether the rows have the covariances that sensor `file` takes.
+bool has_covariances(const input::OdometryRows& rows);
+
+// The motion of the body by an odometry file, at any moment that its rows cover.
+class OdometryPath {
+ public:
+  // Throws ContractError without a row, and for sensor `file` without covariances.
+  OdometryPath(const OdometryConfig& config, input::OdometryRows rows);
+
+  double first_s() const { return rows_.front().stamp_s; }
+  double last_s() const { return rows_.back().stamp_s; }
+
+  // Pose at the moment, in the file's world: interpolated between rows at most
+  // OdometryConfig::max_gap_s apart. Nothing in longer gaps, before the first and after the last.
+  std::optional<core::Rigid3> world_from_body(double stamp_s) const;
+
+  // Between two moments that have a pose, from <= to: the pose of the body at `to` in that at
+  // `from` with its covariance, without what of the drift is constant over the run.
+  geometry::UncertainPose motion(double from_s, double to_s) const;
+
+ private:
+  core::Rigid3 interpolated(double stamp_s) const;
+  OdometryStep step(double from_s, double to_s) const;
+  core::Matrix6d covariance_by_rows(double from_s, double to_s) const;
+
+  OdometryConfig config_;
+  input::OdometryRows rows_;
+  bool uses_covariances_ = false;
+  DriftRates rates_;
+  // Axis of the file's world that the body turns about; none: no single one.
+  std::optional<Eigen::Vector3d> up_in_world_;
+};
+
+}  // namespace samewhere::pipeline

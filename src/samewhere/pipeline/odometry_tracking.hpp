@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/odometry_path.hpp>
+#include <samewhere/pipeline/visible_map.hpp>
+#include <samewhere/track/tracker.hpp>
+
+namespace samewhere::pipeline {
+
+// Frames posed by odometry from a file: the pose of the newest keyframe, composed with the motion
+// since. Features only tell which landmarks a view shows; no visual pose replaces that of odometry.
+class OdometryTracking {
+ public:
+  OdometryTracking(const Config& config, std::shared_ptr<const OdometryPath> path)
+      : config_(config), path_(std::move(path)) {}
+
+  bool has_pose(double stamp_s) const { return path_->world_from_body(stamp_s).has_value(); }
+  // Of the body at `to` in that at `from`; nothing if one of them has no pose.
+  std::optional<core::Rigid3> motion(double from_s, double to_s) const;
+
+  // The view, which has a pose, relative to the newest keyframe. Weak: too few of its features show
+  // landmarks for a visual pose; then it has none.
+  scene::TrackedView track(const features::View& view, const VisibleMap& map,
+                           const track::Tracker& tracker) const;
+
+  // Far enough from the newest keyframe, or with other landmarks.
+  bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked) const;
+
+ private:
+  Config config_;
+  std::shared_ptr<const OdometryPath> path_;
+};
+
+}  // namespace samewhere::pipeline

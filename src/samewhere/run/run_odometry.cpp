@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/input/odometry_file.hpp>
+#include <samewhere/run/run_odometry.hpp>
+
+namespace samewhere::run {
+namespace {
+
+pipeline::OdometryConfig settled(pipeline::OdometryConfig config, const input::OdometryRows& rows) {
+  using enum pipeline::OdometrySensor;
+  if (config.sensor == kFile && !pipeline::has_covariances(rows)) config.sensor = kWheel;
+  return config;
+}
+
+}  // namespace
+
+pipeline::Config with_odometry_sensor(pipeline::Config config) {
+  if (config.odometry.is_used())
+    config.odometry = settled(config.odometry, input::read_odometry(config.odometry.file));
+  return config;
+}
+
+RunOdometry::RunOdometry(const pipeline::Config& config, const core::SourceInfo& source)
+    : file_(config.odometry.file), source_(source) {
+  if (source.is_live && !source.is_video) {
+    throw core::InputError(file_ +
+                           ": odometry from a file needs a recording; found a live camera as "
+                           "source");
+  }
+  input::OdometryRows rows = input::read_odometry(file_);
+  const pipeline::OdometryConfig of_file = settled(config.odometry, rows);
+  path_ = std::make_shared<const pipeline::OdometryPath>(of_file, std::move(rows));
+}
+
+void RunOdometry::see(const core::Frame& frame) {
+  if (!first_frame_s_) {
+    first_frame_s_ = frame.stamp_s;
+    constexpr double kMargin = 1.5;  // the rate is a median
+    const bool is_length_known = source_.num_frames > 0 && source_.frame_rate_hz > 0.0;
+    const double latest_s =
+        frame.stamp_s + kMargin * source_.num_frames / source_.frame_rate_hz + kMargin;
+    if (frame.stamp_s > path_->last_s() || (is_length_known && latest_s < path_->first_s()))
+      throw core::InputError(no_overlap(is_length_known ? latest_s : frame.stamp_s));
+  }
+  last_frame_s_ = frame.stamp_s;
+  ++num_frames_;
+  if (!path_->world_from_body(frame.stamp_s)) ++num_without_;
+}
+
+std::string RunOdometry::no_overlap(double last_frame_s) const {
+  return fmt::format(
+      "{}: has rows from {:.3f} to {:.3f} s, the frames lie between {:.3f} and {:.3f} s; expected "
+      "stamps of the same clock (images without stamps: names that are stamps, or a TUM rgb.txt)",
+      file_, path_->first_s(), path_->last_s(), *first_frame_s_, last_frame_s);
+}
+
+report::Figure RunOdometry::figure() const {
+  if (num_without_ > 0 && num_without_ < num_frames_) {
+    spdlog::warn(
+        "{}: {} of {} frames have no odometry (before, after or between rows more than "
+        "odometry.max_gap_s apart) and no pose",
+        file_, num_without_, num_frames_);
+  }
+  return report::figure("frames without odometry", "{}", num_without_);
+}
+
+std::optional<std::string> RunOdometry::error() const {
+  if (num_frames_ == 0 || num_without_ < num_frames_) return std::nullopt;
+  return no_overlap(last_frame_s_);
+}
+
+}  // namespace samewhere::run
