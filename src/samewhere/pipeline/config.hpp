@@ -23,6 +23,7 @@ struct Config {
   int seed = 0;
   bool threads = true;
   bool close_loops = true;
+  verify::Prior prior = verify::Prior::kRepetitive;
   input::Config input;
   twin::Config twin;
   features::Config features;
@@ -49,6 +50,10 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("close_loops", config.close_loops,
         {.help = "`run`: accepted loops correct the map; false: loop closing is off, "
                  "relocalization is not"});
+  visit("prior", config.prior,
+        {.help = "`repetitive`: look-alike places exist, and appearance alone is no evidence; "
+                 "`unique`: they do not exist",
+         .choices = {"repetitive", "unique"}});
   visit("input", config.input, {.help = "Reading recordings"});
   const bool renders = config.source.empty() || config.source.starts_with("twin:");
   visit("twin", config.twin, {.help = "The twin building", .is_used = renders});

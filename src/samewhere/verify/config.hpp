@@ -4,6 +4,9 @@
 
 namespace samewhere::verify {
 
+// What is known of the building: whether places that look alike exist in it.
+enum class Prior { kRepetitive, kUnique };
+
 // What makes a candidate the best of its query.
 enum class RankBy { kSimilarity, kInliers };
 
