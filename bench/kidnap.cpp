@@ -154,15 +154,6 @@ Trial walk_on(const Walk& walk, int start, const Settings& settings, pipeline::S
     const std::chrono::duration<double, std::milli> spent =
         std::chrono::steady_clock::now() - begin;
     const core::FramePose& pose = slam.frames().back();
-    if (const char* dump = std::getenv("OW_DUMP")) {
-      FILE* f = std::fopen(dump, "a");
-      const core::Rigid3 t = inverse(walk.truth.trajectory[0].world_from_camera) *
-                             walk.truth.trajectory[static_cast<std::size_t>(i)].world_from_camera;
-      std::fprintf(f, "T,%d,%d,%llu,%.3f,%.3f,%.3f,%d\n", start, i,
-                   static_cast<unsigned long long>(frame.id.index()), t.translation.x(),
-                   t.translation.y(), t.translation.z(), static_cast<int>(pose.status));
-      std::fclose(f);
-    }
     trial.poses.push_back(pose);
     if (pose.status == core::FrameStatus::kProvisional)
       outcomes.provisional_ms.push_back(spent.count());
@@ -241,11 +232,6 @@ Outcomes relocalize_all(const Walk& walk, const std::vector<int>& starts, int nu
   const std::vector<bool> common = common_frames(walk, num_map_frames);
   std::optional<scene::StoredMap> map;
   if (!settings.is_mid_run) map = map_of(walk, num_map_frames, config);
-  if (const char* dump = std::getenv("OW_DUMP")) {
-    FILE* f = std::fopen(dump, "a");
-    std::fprintf(f, "M,%s,%d\n", config.source.c_str(), num_map_frames);
-    std::fclose(f);
-  }
   core::Progress progress("starts", static_cast<int>(starts.size()));
   for (const int start : starts) {
     outcomes.trials.push_back(

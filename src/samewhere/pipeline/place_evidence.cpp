@@ -66,6 +66,8 @@ void PlaceEvidence::add(const PlaceView& view) {
   const double new_m = view.moved_m * std::min(1.0, view.new_ratio / kNewRatio);
   const double leaves = 1.0 - std::exp(-kLeavesPerMetre * new_m);
 
+  mix(here_.as_mapped, here_.changed);
+  mix(lookalike_.same, lookalike_.differing);
   here_ = {here_.as_mapped * same, here_.changed * differing};
   const double in_common = lookalike_.same + lookalike_.differing;
   lookalike_ = {

@@ -17,7 +17,7 @@ PlaceEvidence after(int num_views, const PlaceView& view, PlaceEvidence evidence
 TEST(PlaceEvidence, LandmarksThatWereSeenBeforeAddNothing) {
   PlaceView again = kExplained;
   again.new_ratio = 0.0;
-  EXPECT_EQ(after(1000, again).log_likelihood_ratio(), 0.0);
+  EXPECT_NEAR(after(1000, again).log_likelihood_ratio(), 0.0, 1e-9);
 }
 
 TEST(PlaceEvidence, GrowsWithMetresThatAreExplained) {

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include <samewhere/map/mapper.hpp>
@@ -15,7 +13,7 @@ constexpr double kStep_rad = 0.35;
 constexpr double kRetrieval_m = 0.5;  // between two retrievals
 constexpr std::size_t kRememberedViews = 30;
 constexpr std::size_t kMaxHypotheses = 8;
-constexpr int kMaxFailures = 6;     // evaluations of a hypothesis without a pose
+constexpr int kMaxFailures = 3;     // evaluations of a hypothesis without a pose
 constexpr int kMaxUnmeasured = 15;  // views
 constexpr int kMinVisible = 30;     // landmarks; with fewer the map ends
 constexpr int kMinComparedViews = 2;
@@ -147,16 +145,13 @@ void ProvisionalRelocalization::advance(const core::Rigid3& last_from_this, cons
   last_view_ = query.view;
 }
 
-double ProvisionalRelocalization::found_ratio_of_mapping(core::KeyframeId keyframe,
+double ProvisionalRelocalization::found_ratio_of_mapping(const scene::LocalMap& local_map,
                                                          const scene::MapVersion& map) {
-  if (std::exchange(map_number_, map.number) != map.number) found_ratios_.clear();
-  const auto known = found_ratios_.find(keyframe);
-  if (known != found_ratios_.end()) return known->second;
   constexpr double kUsual = 0.5;
-  const double ratio =
-      pipeline::found_ratio_of_mapping(map, keyframe, config_.map).value_or(kUsual);
-  found_ratios_[keyframe] = ratio;
-  return ratio;
+  if (std::exchange(map_number_, map.number) != map.number) found_ratios_.clear();
+  const auto [known, is_new] = found_ratios_.try_emplace(local_map.reference, kUsual);
+  if (is_new) known->second = pipeline::found_ratio_of_mapping(map, local_map).value_or(kUsual);
+  return known->second;
 }
 
 void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& query) const {
@@ -171,60 +166,18 @@ void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& qu
 void ProvisionalRelocalization::add_step(Hypothesis& hypothesis, const Query& query) {
   add_view(hypothesis, query);
   const Counts& total = hypothesis.views.back().total;
-  PlaceView view{.moved_m = hypothesis.since_step.translation.norm()};
-  int num_new = 0;
+  PlaceView view{
+      .found_ratio = 0.0, .new_ratio = 1.0, .moved_m = hypothesis.since_step.translation.norm()};
   if (hypothesis.pose) {
     const std::vector<core::LandmarkId> inliers = inliers_of(*hypothesis.pose);
+    int num_new = 0;
     for (const core::LandmarkId id : inliers) num_new += hypothesis.seen.insert(id).second ? 1 : 0;
     view.new_ratio = static_cast<double>(num_new) / static_cast<double>(inliers.size());
-  } else {
-    view.new_ratio = 1.0;
+    view.found_ratio =
+        total.num_inliers / (found_ratio_of_mapping(hypothesis.pose->local_map, query.map) *
+                             std::max(1, total.num_visible));
   }
-  const core::KeyframeId keyframe = hypothesis.pose
-                                        ? nearest_keyframe(query.map, *hypothesis.pose)
-                                        : holder_of(query.map, hypothesis.place.keyframe).keyframe;
-  const double expected = found_ratio_of_mapping(keyframe, query.map);
-  view.found_ratio =
-      total.num_visible > 0 ? total.num_inliers / (expected * total.num_visible) : 0.0;
   if (total.num_visible >= kMinVisible) hypothesis.evidence.add(view);
-  if (const char* dump = std::getenv("OW_DUMP")) {
-    FILE* f = std::fopen(dump, "a");
-    const core::Rigid3 w = world_from_body(query.map, hypothesis.place);
-    int nf = 0, nd = 0;
-    int nfc = 0;
-    for (int i = 0; i < query.view.features->size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      nd += query.view.features->depth_m[k] > 0;
-      const auto px = query.view.features->undistorted_px[k];
-      const int col = std::clamp(
-          static_cast<int>(px.x() / static_cast<float>(query.view.image_size_px.width) * 8), 0, 7);
-      const int row = std::clamp(
-          static_cast<int>(px.y() / static_cast<float>(query.view.image_size_px.height) * 6), 0, 5);
-      if (hypothesis.views.back().cells[static_cast<std::size_t>(row * 8 + col)].num_visible >= 5 &&
-          query.view.features->depth_m[k] > 0)
-        ++nfc;
-    }
-    nf = query.view.features->size();
-    const auto& kf = query.map.at(keyframe);
-    int slots = 0;
-    for (const auto& id : kf.slots) slots += id.is_valid() ? 1 : 0;
-    double q = -1;
-    int nq = 0;
-    if (&hypothesis != &best()) {
-      const auto c = compare(hypothesis.views, best().views);
-      q = c.b.num_inliers > 0 ? 1.0 * c.a.num_inliers / c.b.num_inliers : -1;
-      nq = c.num_views;
-    }
-    std::fprintf(
-        f, "%llu,%d,%d,%zu,%.3f,%.3f,%.3f,%d,%d,%.3f,%d,%.3f,%d,%d,%d,%zu,%.3f,%d,%.3f,%.3f\n",
-        static_cast<unsigned long long>(query.view.frame.index()),
-        static_cast<int>(&hypothesis - &best()), hypothesis.place.is_recognised ? 1 : 0,
-        keyframe.index(), w.translation.x(), w.translation.y(), w.translation.z(),
-        total.num_inliers, total.num_visible, expected, num_new, view.moved_m, nf, nd, nfc,
-        slots ? static_cast<std::size_t>(slots) : 0, q, nq,
-        hypothesis.evidence.log_likelihood_ratio(), log_ratio(best()));
-    std::fclose(f);
-  }
   hypothesis.num_failures = hypothesis.pose ? 0 : hypothesis.num_failures + 1;
   hypothesis.since_step = {};
   hypothesis.since_step_m = 0.0;

@@ -76,7 +76,7 @@ class ProvisionalRelocalization {
                                  const scene::MapVersion& map) const;
   static core::FramePose pose_of(const Hypothesis& hypothesis, const Query& query);
   Decision decide(const std::vector<Place>* places, const Query& query) const;
-  double found_ratio_of_mapping(core::KeyframeId keyframe, const scene::MapVersion& map);
+  double found_ratio_of_mapping(const scene::LocalMap& local_map, const scene::MapVersion& map);
 
   Config config_;
   track::Tracker tracker_;

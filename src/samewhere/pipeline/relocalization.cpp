@@ -16,7 +16,9 @@ bool is_shortly_after(const core::FramePose* last_pose, double stamp_s) {
 }
 
 int num_views_required(const Config& config, const core::FramePose* last_pose, double stamp_s) {
-  return is_shortly_after(last_pose, stamp_s) ? 1 : config.track.relocalization.min_views;
+  const bool is_one_enough =
+      config.prior == verify::Prior::kUnique && is_shortly_after(last_pose, stamp_s);
+  return is_one_enough ? 1 : config.track.relocalization.min_views;
 }
 
 // Farther poses belong to a look-alike place.

@@ -148,15 +148,14 @@ ComparedCounts compare(const std::vector<ViewEvidence>& a, const std::vector<Vie
 }
 
 std::optional<double> found_ratio_of_mapping(const scene::MapVersion& map,
-                                             core::KeyframeId keyframe, const map::Config& config) {
-  const scene::Keyframe& shown = map.at(keyframe);
-  const scene::LocalMap local_map = map::local_map(map, keyframe, config);
+                                             const scene::LocalMap& local_map) {
+  const scene::Keyframe& shown = map.at(local_map.reference);
   std::vector<core::LandmarkId> observed = shown.slots;
   std::sort(observed.begin(), observed.end());
   Counts counts;
   for_each_visible(local_map, shown.view, {}, [&](std::size_t i, const Eigen::Vector2d&) {
     const core::LandmarkId id = local_map.landmarks[i];
-    if (map.at(id).anchor == keyframe) return;
+    if (map.at(id).anchor == local_map.reference) return;
     ++counts.num_visible;
     counts.num_inliers += std::binary_search(observed.begin(), observed.end(), id) ? 1 : 0;
   });

@@ -72,10 +72,10 @@ struct ComparedCounts {
 };
 ComparedCounts compare(const std::vector<ViewEvidence>& a, const std::vector<ViewEvidence>& b);
 
-// Share of the visible landmarks that mapping itself found at a keyframe: of the landmarks of the
-// local map that project into it, those that it observes. Landmarks that it introduced are left
+// Share of the visible landmarks that mapping itself found at the reference of a local map: of the
+// landmarks that project into it, those that it observes. Landmarks that it introduced are left
 // out. Nothing where there are too few.
 std::optional<double> found_ratio_of_mapping(const scene::MapVersion& map,
-                                             core::KeyframeId keyframe, const map::Config& config);
+                                             const scene::LocalMap& local_map);
 
 }  // namespace samewhere::pipeline
