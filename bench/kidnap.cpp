@@ -1,10 +1,12 @@
 // kidnap: kidnapped-robot test with a saved map: relocalized correctly, wrongly, or not at all?
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -32,7 +34,8 @@ struct Settings {
   int first_seed = 1000;
   int num_seeds = 1;
   int num_starts = 10;
-  int num_frames = 30;  // after each start
+  int num_frames = 300;  // after each start: about 20 m
+  bool is_mid_run = false;
   std::string csv_file;
 };
 
@@ -94,11 +97,22 @@ std::vector<int> first_lookalikes(const Walk& walk, int num_frames) {
   return found;
 }
 
+enum class Answer { kNone, kCorrect, kWrong };
+
+// Of one trial. Metres are those of the truth.
+struct Outcome {
+  Answer first = Answer::kNone;      // of the first pose, provisional or not
+  Answer confirmed = Answer::kNone;  // of the first confirmed pose
+  double until_confirmed_m = 0.0;
+  int num_taken_back = 0;
+  // From the last frame that the look-alike place explains until no wrong pose is given any more.
+  std::optional<double> wrong_after_m;
+};
+
 struct Outcomes {
-  int num_correct = 0;
-  int num_wrong = 0;
-  int num_undecided = 0;          // no pose
-  std::vector<int> frames_taken;  // until relocalized
+  std::vector<Outcome> trials;
+  std::vector<double> provisional_ms;  // of each frame
+  std::vector<double> tracked_ms;
 };
 
 // Whether the error of the pose is below the limits, in the world of a map that began at frame 0.
@@ -109,59 +123,174 @@ bool is_correct_pose(const core::Rigid3& world_from_body, const Walk& walk, std:
   return apart.translation.norm() < kMaxError_m && core::angle_rad(apart.rotation) < kMaxError_rad;
 }
 
-// Starts at frame `start` and runs for at most `num_frames`; the first pose counts.
-void relocalize(const Walk& walk, int start, int num_frames, const scene::StoredMap& map,
-                const pipeline::Config& config, Outcomes& outcomes) {
-  pipeline::Slam slam(config, map, pipeline::Slam::Use::kLocalize);
-  const int end = std::min(start + num_frames, static_cast<int>(walk.frames.size()));
-  for (int i = start; i < end; ++i) {
+double walked_m(const Walk& walk, int from, int to) {
+  double sum_m = 0.0;
+  for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)
+    sum_m += (walk.truth.trajectory[i + 1].world_from_camera.translation -
+              walk.truth.trajectory[i].world_from_camera.translation)
+                 .norm();
+  return sum_m;
+}
+
+// A trial: the frames of the walk from `start` on, as a session gave their poses at the time.
+struct Trial {
+  int start = 0;
+  std::vector<core::FramePose> poses;
+  pipeline::RelocalizationCounts counts;
+};
+
+// Walks on until some frames after the relocalization is confirmed, or to the end of the walk.
+Trial walk_on(const Walk& walk, int start, const Settings& settings, pipeline::Slam& slam,
+              Outcomes& outcomes) {
+  constexpr int kTrackedFrames = 15;
+  Trial trial{.start = start, .poses = {}, .counts = {}};
+  const int end = std::min(start + settings.num_frames, static_cast<int>(walk.frames.size()));
+  int num_tracked = 0;
+  for (int i = start; i < end && num_tracked < kTrackedFrames; ++i) {
     core::Frame frame = walk.frames[static_cast<std::size_t>(i)];
-    frame.id = core::FrameId(static_cast<std::uint64_t>(i - start), slam.session());
+    frame.id = core::FrameId(slam.frames().size(), slam.session());
+    const auto begin = std::chrono::steady_clock::now();
     slam.feed(frame);
+    const std::chrono::duration<double, std::milli> spent =
+        std::chrono::steady_clock::now() - begin;
     const core::FramePose& pose = slam.frames().back();
-    if (!pose.is_measured) continue;
-    const core::Rigid3 world_from_frame =
-        world_from_body(map.map, pose.reference_keyframe) * pose.reference_from_frame;
-    const bool is_correct = is_correct_pose(world_from_frame, walk, static_cast<std::size_t>(i));
-    ++(is_correct ? outcomes.num_correct : outcomes.num_wrong);
-    outcomes.frames_taken.push_back(i - start + 1);
-    slam.finish();
-    return;
+    trial.poses.push_back(pose);
+    if (pose.status == core::FrameStatus::kProvisional)
+      outcomes.provisional_ms.push_back(spent.count());
+    if (pose.status == core::FrameStatus::kTracking) outcomes.tracked_ms.push_back(spent.count());
+    num_tracked += is_confirmed(pose) ? 1 : 0;
   }
-  ++outcomes.num_undecided;
+  trial.counts = slam.relocalizations();
   slam.finish();
+  return trial;
+}
+
+// `common`: by frame, whether it shows what the map holds, or a look-alike of it.
+Outcome outcome_of(const Trial& trial, const Walk& walk, const scene::MapVersion& map,
+                   const std::vector<bool>& common) {
+  Outcome outcome;
+  outcome.num_taken_back = trial.counts.num_taken_back;
+  int last_common = trial.start;
+  bool is_wrong = false;
+  for (std::size_t i = 0; i < trial.poses.size(); ++i) {
+    const int frame = trial.start + static_cast<int>(i);
+    const core::FramePose& pose = trial.poses[i];
+    if (common[static_cast<std::size_t>(frame)]) last_common = frame;
+    const bool had_been_wrong = std::exchange(is_wrong, false);
+    if (pose.is_measured) {
+      const bool is_correct =
+          is_correct_pose(world_from_frame(map, pose), walk, static_cast<std::size_t>(frame));
+      is_wrong = !is_correct;
+      const Answer answer = is_correct ? Answer::kCorrect : Answer::kWrong;
+      if (outcome.first == Answer::kNone) outcome.first = answer;
+      if (is_confirmed(pose) && outcome.confirmed == Answer::kNone) {
+        outcome.confirmed = answer;
+        outcome.until_confirmed_m = walked_m(walk, trial.start, frame);
+      }
+    }
+    if (had_been_wrong && !is_wrong) outcome.wrong_after_m = walked_m(walk, last_common, frame);
+  }
+  return outcome;
+}
+
+// Starts at frame `start`, with the map of an earlier session.
+Outcome relocalize(const Walk& walk, int start, const Settings& settings,
+                   const scene::StoredMap& map, const std::vector<bool>& common,
+                   const pipeline::Config& config, Outcomes& outcomes) {
+  pipeline::Slam slam(config, map, pipeline::Slam::Use::kLocalize);
+  const Trial trial = walk_on(walk, start, settings, slam, outcomes);
+  return outcome_of(trial, walk, map.map, common);
+}
+
+// Starts at frame `start`, after the first frames: the session runs on.
+Outcome carry_off(const Walk& walk, int num_map_frames, int start, const Settings& settings,
+                  const std::vector<bool>& common, const pipeline::Config& config,
+                  Outcomes& outcomes) {
+  pipeline::Slam slam(config);
+  for (int i = 0; i < num_map_frames; ++i) slam.feed(walk.frames[static_cast<std::size_t>(i)]);
+  const pipeline::RelocalizationCounts before = slam.relocalizations();
+  Trial trial = walk_on(walk, start, settings, slam, outcomes);
+  trial.counts.num_taken_back -= before.num_taken_back;
+  return outcome_of(trial, walk, slam.map(), common);
+}
+
+// Of each frame of the walk: whether one of the first `num_map_frames` shows the same place, or a
+// look-alike of it.
+std::vector<bool> common_frames(const Walk& walk, int num_map_frames) {
+  std::vector<bool> common(walk.frames.size(), false);
+  for (const core::FramePair& pair : walk.truth.aliased_pairs)
+    if (pair.match < num_map_frames) common[static_cast<std::size_t>(pair.query)] = true;
+  for (int i = 0; i < static_cast<int>(walk.frames.size()); ++i)
+    if (was_seen_before(*walk.truth.places, i, num_map_frames))
+      common[static_cast<std::size_t>(i)] = true;
+  return common;
 }
 
 Outcomes relocalize_all(const Walk& walk, const std::vector<int>& starts, int num_map_frames,
                         const Settings& settings, const pipeline::Config& config) {
   Outcomes outcomes;
-  const scene::StoredMap map = map_of(walk, num_map_frames, config);
+  const std::vector<bool> common = common_frames(walk, num_map_frames);
+  std::optional<scene::StoredMap> map;
+  if (!settings.is_mid_run) map = map_of(walk, num_map_frames, config);
   core::Progress progress("starts", static_cast<int>(starts.size()));
   for (const int start : starts) {
-    relocalize(walk, start, settings.num_frames, map, config, outcomes);
-    progress.update(outcomes.num_correct + outcomes.num_wrong + outcomes.num_undecided);
+    outcomes.trials.push_back(
+        map ? relocalize(walk, start, settings, *map, common, config, outcomes)
+            : carry_off(walk, num_map_frames, start, settings, common, config, outcomes));
+    progress.update(static_cast<int>(outcomes.trials.size()));
   }
   progress.finish();
   return outcomes;
 }
 
+std::string quantile_of(std::vector<double> values, double quantile, std::string_view format) {
+  if (values.empty()) return "-";
+  std::sort(values.begin(), values.end());
+  const auto index = static_cast<std::size_t>(quantile * static_cast<double>(values.size() - 1));
+  return fmt::format(fmt::runtime(format), values[index]);
+}
+
+// Time of a provisional frame over that of a tracked frame.
+std::string time_ratio(const Outcomes& outcomes, double quantile) {
+  const std::string provisional = quantile_of(outcomes.provisional_ms, quantile, "{}");
+  const std::string tracked = quantile_of(outcomes.tracked_ms, quantile, "{}");
+  if (provisional == "-" || tracked == "-") return "-";
+  return fmt::format("{:.2f}", std::stod(provisional) / std::stod(tracked));
+}
+
 std::vector<std::string> row_of(const std::string& source, std::string_view where,
                                 const Outcomes& outcomes) {
-  std::vector<int> taken = outcomes.frames_taken;
-  std::sort(taken.begin(), taken.end());
+  const std::vector<Outcome>& trials = outcomes.trials;
+  const auto count = [&trials](auto Outcome::*member, Answer answer) {
+    return fmt::format("{}", std::count_if(trials.begin(), trials.end(),
+                                           [&](const Outcome& o) { return o.*member == answer; }));
+  };
+  int num_taken_back = 0;
+  std::vector<double> until_m;
+  std::vector<double> wrong_m;
+  for (const Outcome& outcome : trials) {
+    num_taken_back += outcome.num_taken_back;
+    if (outcome.confirmed != Answer::kNone) until_m.push_back(outcome.until_confirmed_m);
+    if (outcome.wrong_after_m) wrong_m.push_back(*outcome.wrong_after_m);
+  }
   return {source,
           std::string(where),
-          fmt::format("{}", outcomes.num_correct + outcomes.num_wrong + outcomes.num_undecided),
-          fmt::format("{}", outcomes.num_correct),
-          fmt::format("{}", outcomes.num_wrong),
-          fmt::format("{}", outcomes.num_undecided),
-          taken.empty() ? "-" : fmt::format("{}", taken[taken.size() / 2])};
+          fmt::format("{}", trials.size()),
+          count(&Outcome::first, Answer::kCorrect),
+          count(&Outcome::first, Answer::kWrong),
+          count(&Outcome::confirmed, Answer::kCorrect),
+          count(&Outcome::confirmed, Answer::kWrong),
+          count(&Outcome::confirmed, Answer::kNone),
+          fmt::format("{}", num_taken_back),
+          quantile_of(until_m, 0.5, "{:.1f}"),
+          quantile_of(wrong_m, 1.0, "{:.1f}"),
+          time_ratio(outcomes, 0.5),
+          time_ratio(outcomes, 0.99)};
 }
 
 void measure_walk(const std::string& source, const Settings& settings, Table& table) {
   pipeline::Config config = pipeline::profile("default");
   config.source = source;
-  config.threads = false;
   const Walk walk = walk_of(config);
   config = run::with_window_in_frames(config, walk.info);
   const auto& revisits = walk.truth.revisits;
@@ -169,7 +298,10 @@ void measure_walk(const std::string& source, const Settings& settings, Table& ta
     throw core::InputError(source + ": returns to no place, expected a sequence that does");
   const core::FrameSpan revisit = revisits->front();
   std::vector<int> revisit_frames;
-  for (int i = revisit.first; i <= revisit.last; ++i) revisit_frames.push_back(i);
+  constexpr double kWalk_m = 2.0;  // that is left at least
+  const int last_frame = static_cast<int>(walk.frames.size()) - 1;
+  for (int i = revisit.first; i <= revisit.last; ++i)
+    if (walked_m(walk, i, last_frame) >= kWalk_m) revisit_frames.push_back(i);
   table.rows.push_back(
       row_of(source, "the place",
              relocalize_all(walk, evenly_spaced(revisit_frames, settings.num_starts), revisit.first,
@@ -182,8 +314,10 @@ void measure_walk(const std::string& source, const Settings& settings, Table& ta
 }
 
 void measure(const Settings& settings) {
-  Table table{{"walk", "content of the map", "trials", "correct", "wrong", "undecided",
-               "frames until relocalized, median"},
+  Table table{{"walk", "content of the map", "trials", "first pose correct", "first pose wrong",
+               "confirmed correct", "confirmed wrong", "never confirmed", "taken back",
+               "m until confirmed, median", "m wrong after leaving the common part, most",
+               "time of a provisional over a tracked frame, p50", "p99"},
               {}};
   for (int i = 0; i < settings.num_seeds; ++i) {
     measure_walk(fmt::format("twin:{}?seed={}&similarity={}", settings.preset,
@@ -206,9 +340,10 @@ std::function<void()> set_up(CLI::App& app) {
   app.add_option("--seeds", settings->num_seeds, "sequences")->check(CLI::Range(1, 100));
   app.add_option("--starts", settings->num_starts, "trials of each sequence and map")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--frames", settings->num_frames,
-                 "of a trial; without a pose in them it is undecided")
+  app.add_option("--frames", settings->num_frames, "of a trial at most; the default is about 20 m")
       ->check(CLI::Range(1, 100000));
+  app.add_flag("--mid-run", settings->is_mid_run,
+               "carried off in the middle of a run: the session that makes the map runs on");
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

@@ -9,7 +9,9 @@ namespace samewhere::core {
 
 // Tracking status. kWeak: the pose was measured with few inliers, or scale drift is suspected.
 // kLost: no pose. kWaitingFor...: not initialized, and what initialization lacks: features; with
-// depth, depth at them; without, a second view with parallax.
+// depth, depth at them; without, a second view with parallax. kResumed: relocalized, confirmed.
+// kProvisional: the pose belongs to a relocalization that is not confirmed: it may be in a
+// look-alike place.
 enum class FrameStatus {
   kStarting,
   kTracking,
@@ -18,10 +20,13 @@ enum class FrameStatus {
   kResumed,
   kWaitingForFeatures,
   kWaitingForDepth,
-  kWaitingForParallax
+  kWaitingForParallax,
+  kProvisional
 };
-constexpr FrameStatus kLastStatus = FrameStatus::kWaitingForParallax;
-constexpr bool is_waiting(FrameStatus status) { return status > FrameStatus::kResumed; }
+constexpr FrameStatus kLastStatus = FrameStatus::kProvisional;
+constexpr bool is_waiting(FrameStatus status) {
+  return status > FrameStatus::kResumed && status < FrameStatus::kProvisional;
+}
 
 constexpr std::string_view name_of(FrameStatus status) {
   constexpr std::string_view kNames[] = {"initializing",
@@ -31,7 +36,8 @@ constexpr std::string_view name_of(FrameStatus status) {
                                          "relocalized",
                                          "waiting for features",
                                          "waiting for depth",
-                                         "waiting for parallax"};
+                                         "waiting for parallax",
+                                         "provisional"};
   return kNames[static_cast<int>(status)];
 }
 
@@ -51,5 +57,10 @@ struct FramePose {
   // scene::reference_from_frame().
   double log_scale = 0.0;
 };
+
+// Whether the frame has a pose that is not provisional.
+inline bool is_confirmed(const FramePose& pose) {
+  return pose.is_measured && pose.status != FrameStatus::kProvisional;
+}
 
 }  // namespace samewhere::core

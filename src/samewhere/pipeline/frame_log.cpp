@@ -14,10 +14,27 @@ constexpr std::size_t kReservedFrames = 108000;
 
 FrameLog::FrameLog(std::uint16_t session) : session_(session) { frames_.reserve(kReservedFrames); }
 
-const core::FramePose* FrameLog::last_measured() const {
-  const auto last = std::find_if(frames_.rbegin(), frames_.rend(),
-                                 [](const core::FramePose& frame) { return frame.is_measured; });
+const core::FramePose* FrameLog::last_confirmed() const {
+  const auto last = std::find_if(frames_.rbegin(), frames_.rend(), core::is_confirmed);
   return last == frames_.rend() ? nullptr : &*last;
+}
+
+const core::FramePose* FrameLog::before(const core::FramePose& frame) const {
+  const std::size_t index = frame.frame.index();
+  return index > 0 && is_confirmed(frames_.at(index - 1)) ? &frames_[index - 1] : nullptr;
+}
+
+void FrameLog::confirm_provisional(int weak_inliers) {
+  for_each_provisional([&](core::FramePose& frame) {
+    frame.status =
+        frame.num_inliers < weak_inliers ? core::FrameStatus::kWeak : core::FrameStatus::kTracking;
+  });
+}
+
+void FrameLog::take_back_provisional() {
+  for_each_provisional([](core::FramePose& frame) {
+    frame = {.frame = frame.frame, .stamp_s = frame.stamp_s, .status = core::FrameStatus::kLost};
+  });
 }
 
 void FrameLog::discard_poses() {

@@ -13,6 +13,7 @@ MappingExchange::MappingExchange(MappingLink& link, int visible_after_frames,
 
 scene::MapVersion MappingExchange::initialize(ToMapping start) {
   core::require(!in_progress_, "a map does not begin while a keyframe is in progress");
+  drop_places();
   link_.send(std::move(start));
   scene::MapVersion map = wait().map;
   keyframes_.clear();
@@ -24,6 +25,7 @@ scene::MapVersion MappingExchange::initialize(ToMapping start) {
 void MappingExchange::insert(scene::TrackedView tracked, const cv::Mat& image,
                              std::vector<core::FramePose> frames) {
   core::require(!in_progress_, "one keyframe is in progress at most");
+  drop_places();
   const core::KeyframeId id(num_keyframes_++);
   const core::FrameId frame = tracked.view.frame;
   keyframes_.insert(frame);
@@ -42,8 +44,30 @@ MappingExchange::VisibleKeyframe MappingExchange::receive() {
 }
 
 MapAnswer MappingExchange::find_places(const features::View& view, const cv::Mat& image) {
+  drop_places();
   link_.send(FindPlace{view, image});
   return wait();
+}
+
+void MappingExchange::ask_places(const features::View& view, const cv::Mat& image) {
+  constexpr std::size_t kAnsweredAfterFrames = 4;
+  core::require(!in_progress_ && !places_due_at_frame_, "one question is open at most");
+  link_.send(FindPlace{view, image});
+  places_due_at_frame_ = view.frame.index() + kAnsweredAfterFrames;
+}
+
+bool MappingExchange::are_places_due(std::size_t num_frames) const {
+  return places_due_at_frame_ && *places_due_at_frame_ <= num_frames;
+}
+
+MapAnswer MappingExchange::receive_places() {
+  core::require(places_due_at_frame_.has_value(), "places were asked for");
+  places_due_at_frame_.reset();
+  return wait();
+}
+
+void MappingExchange::drop_places() {
+  if (places_due_at_frame_) receive_places();
 }
 
 void MappingExchange::save(std::vector<core::FramePose> frames) {
@@ -51,6 +75,7 @@ void MappingExchange::save(std::vector<core::FramePose> frames) {
 }
 
 void MappingExchange::finish(std::vector<core::FramePose> frames) {
+  drop_places();
   link_.send(EndOfInput{std::move(frames)});
 }
 

@@ -35,6 +35,12 @@ class MappingExchange {
   VisibleKeyframe receive();
   // Places of the whole map that the view may show. Waits.
   MapAnswer find_places(const features::View& view, const cv::Mat& image);
+  // The same, answered some frames later by receive_places(); a question that waits drops the
+  // answer.
+  void ask_places(const features::View& view, const cv::Mat& image);
+  bool are_places_asked() const { return places_due_at_frame_.has_value(); }
+  bool are_places_due(std::size_t num_frames) const;
+  MapAnswer receive_places();  // waits
   // Frames without a keyframe.
   void save(std::vector<core::FramePose> frames);
   void finish(std::vector<core::FramePose> frames);
@@ -56,6 +62,7 @@ class MappingExchange {
   };
 
   MapAnswer wait();
+  void drop_places();
 
   MappingLink& link_;
   std::size_t visible_after_frames_ = 0;
@@ -64,6 +71,7 @@ class MappingExchange {
   std::uint64_t num_discarded_ = 0;
   std::set<core::FrameId> keyframes_;  // frames of the current map
   std::optional<InProgress> in_progress_;
+  std::optional<std::size_t> places_due_at_frame_;  // position
 };
 
 }  // namespace samewhere::pipeline

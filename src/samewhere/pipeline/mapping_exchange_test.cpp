@@ -69,6 +69,29 @@ TEST_F(MappingExchangeTest, AnotherInitializationDiscardsTheKeyframesBefore) {
   EXPECT_FALSE(exchange_.is_keyframe(core::FrameId(10)));
 }
 
+TEST_F(MappingExchangeTest, PlacesAreDueSomeFramesAfterTheyWereAskedFor) {
+  exchange_.initialize(StartMap{});
+  features::View view;
+  view.frame = core::FrameId(20);
+  EXPECT_FALSE(exchange_.are_places_due(100)) << "none were asked for";
+  exchange_.ask_places(view, {});
+  EXPECT_FALSE(exchange_.are_places_due(21));
+  EXPECT_TRUE(exchange_.are_places_due(30));
+  EXPECT_THROW(exchange_.ask_places(view, {}), core::ContractError);
+  EXPECT_EQ(exchange_.receive_places().map.keyframes.size(), 1U);
+  EXPECT_FALSE(exchange_.are_places_asked());
+}
+
+TEST_F(MappingExchangeTest, AQuestionThatWaitsDropsPlacesThatAreNotDue) {
+  exchange_.initialize(StartMap{});
+  exchange_.ask_places({}, {});
+  insert(10);
+  EXPECT_FALSE(exchange_.are_places_asked());
+  EXPECT_EQ(exchange_.receive().map.keyframes.size(), 2U) << "the answer to the keyframe";
+  exchange_.ask_places({}, {});
+  EXPECT_EQ(exchange_.initialize(StartMap{}).keyframes.size(), 3U);
+}
+
 TEST_F(MappingExchangeTest, SavedFramesHaveNoAnswer) {
   exchange_.initialize(StartMap{});
   exchange_.save({});

@@ -1,32 +1,43 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/messages.hpp>
-#include <samewhere/scene/local_map.hpp>
+#include <samewhere/pipeline/view_evidence.hpp>
 #include <samewhere/track/tracker.hpp>
 
 namespace samewhere::pipeline {
-
-// Pose of a lost view in the map.
-struct RelocalizedPose {
-  scene::LocalMap local_map;
-  track::Track track;  // relative to local_map.reference
-};
 
 // Whether the camera can have reached the pose since its last one.
 using IsReachable = std::function<bool(const core::FramePose& pose)>;
 
 // What a hypothesis needs to be accepted. Weak poses are accepted only if there is no other
-// hypothesis.
+// hypothesis. `is_predicted`: where motion predicts the camera; set: the hypothesis, and no other,
+// is there.
 struct RequiredEvidence {
   int num_views = 1;
   bool may_be_weak = false;
+  IsReachable is_predicted = {};
 };
+
+// The hypothesis with most evidence, and the places of the others.
+struct LeadingHypotheses {
+  RelocalizedPose best;
+  std::vector<Place> others;
+};
+
+struct CompetingLimits {
+  double max_ratio = 0.75;
+  int weak_inliers = 40;  // of a view; with fewer, inliers per visible landmark are not compared
+};
+// Whether another hypothesis has more than a share of the inliers of this one, or of its inliers
+// per visible landmark, in the views and cells in which both are comparable; also if these are too
+// few.
+bool is_competing(const std::vector<ViewEvidence>& other, const std::vector<ViewEvidence>& views,
+                  const CompetingLimits& limits);
 
 // Competing hypotheses for the pose of a lost camera (decision 017). Each view is tracked in the
 // local map of each hypothesis; inliers and visible landmarks are summed over the last views. A
@@ -50,6 +61,10 @@ class PoseHypotheses {
                                           const RequiredEvidence& required,
                                           const IsReachable& is_reachable);
 
+  // Ends with the hypothesis that has most inliers, if it is recognized, not weak, and was
+  // evaluated on `num_views` views. Competing hypotheses do not prevent it.
+  std::optional<LeadingHypotheses> take_leading(int num_views);
+
   // Whether a recognized hypothesis has been evaluated on fewer than `num_views` views.
   bool has_recent(int num_views) const;
 
@@ -57,25 +72,6 @@ class PoseHypotheses {
   void reset() { hypotheses_.clear(); }
 
  private:
-  // In a view, or in a cell of it.
-  struct Counts {
-    int num_inliers = 0;
-    int num_visible = 0;  // landmarks that project into it
-
-    Counts& operator+=(const Counts& more) {
-      num_inliers += more.num_inliers;
-      num_visible += more.num_visible;
-      return *this;
-    }
-  };
-  static constexpr int kColumns = 8;
-  static constexpr int kRows = 6;
-  // Evidence of one view for a hypothesis.
-  struct ViewEvidence {
-    Counts total;
-    std::array<Counts, std::size_t{kColumns} * kRows> cells;  // row by row
-    bool is_comparable = false;  // false: the map ends in the viewing direction
-  };
   struct Hypothesis {
     Place place;                          // of the last view that was tracked
     std::vector<ViewEvidence> evidence;   // of the last views, oldest first
@@ -102,15 +98,13 @@ class PoseHypotheses {
                           TrackedPlace& tracked) const;
   void update(Hypothesis& hypothesis, const Query& query, std::vector<Place>& elsewhere) const;
   void add(const Place& place, const Query& query);
-  ViewEvidence measure(const Hypothesis& hypothesis, const Query& query) const;
+  void update_all(const Query& query, const std::vector<Place>& candidates);
   void add_evidence(const Query& query);
   void merge_equal(const scene::MapVersion& map);
   // Whether the loop verifier recognized a reachable place that is none of the hypotheses.
   bool has_untracked_recognition(const std::vector<Place>& candidates, const Query& query) const;
-  // Whether the map shows similar numbers of landmarks at both.
-  static bool are_comparable(const Counts& a, const Counts& b);
-  bool is_competing(const Hypothesis& other, const Hypothesis& hypothesis) const;
   bool is_accepted(const Hypothesis& hypothesis, const RequiredEvidence& required) const;
+  bool is_predicted_alone(const Hypothesis& hypothesis, const IsReachable& is_predicted) const;
 
   map::Config map_config_;
   track::Config track_config_;

@@ -16,7 +16,9 @@ bool is_shortly_after(const core::FramePose* last_pose, double stamp_s) {
 }
 
 int num_views_required(const Config& config, const core::FramePose* last_pose, double stamp_s) {
-  return is_shortly_after(last_pose, stamp_s) ? 1 : config.track.relocalization.min_views;
+  const bool is_one_enough =
+      config.verify.prior == verify::Prior::kUnique && is_shortly_after(last_pose, stamp_s);
+  return is_one_enough ? 1 : config.track.relocalization.min_views;
 }
 
 // Farther poses belong to a look-alike place.
@@ -33,23 +35,85 @@ bool is_reachable(const scene::MapVersion& map, const core::FramePose& pose,
 }  // namespace
 
 Relocalization::Relocalization(const Config& config, DepthFrom depth_from)
-    : config_(config), hypotheses_(config, lost_tracker(config, depth_from)) {}
+    : config_(config),
+      hypotheses_(config, lost_tracker(config, depth_from)),
+      provisional_(config, lost_tracker(config, depth_from)) {}
 
-std::optional<RelocalizedPose> Relocalization::evaluate(const features::View& view,
-                                                        const scene::MapVersion& map,
-                                                        const std::vector<Place>& candidates,
-                                                        const core::FramePose* last_pose) {
+void Relocalization::reset() {
+  hypotheses_.reset();
+  provisional_.reset();
+}
+
+Relocalization::Result Relocalization::evaluate(const features::View& view,
+                                                const scene::MapVersion& map,
+                                                const std::vector<Place>* candidates,
+                                                const LastMotion& motion) {
+  if (is_provisional()) return follow(view, map, candidates);
+  return begin(view, map, candidates == nullptr ? std::vector<Place>() : *candidates, motion);
+}
+
+Relocalization::Result Relocalization::begin(const features::View& view,
+                                             const scene::MapVersion& map,
+                                             const std::vector<Place>& candidates,
+                                             const LastMotion& motion) {
+  const core::FramePose* last = motion.last;
   // without depth every pose is reachable, also a weak one in a look-alike place
-  const bool may_be_weak = is_shortly_after(last_pose, view.stamp_s) && !is_without_depth(map);
-  const RequiredEvidence required{num_views_required(config_, last_pose, view.stamp_s),
-                                  may_be_weak};
-  return hypotheses_.evaluate(view, map, candidates, required, [&](const core::FramePose& pose) {
-    return is_reachable(map, pose, last_pose, config_.track.relocalization.max_speed_m_s);
-  });
+  const bool may_be_weak = is_shortly_after(last, view.stamp_s) && !is_without_depth(map);
+  RequiredEvidence required{num_views_required(config_, last, view.stamp_s), may_be_weak, {}};
+  const MotionPrediction prediction(map, motion, view.stamp_s, metre_of(map));
+  const double min_ratio = config_.track.relocalization.min_log_ratio;
+  if (config_.verify.prior == verify::Prior::kRepetitive) {
+    required.num_views = 1;
+    required.is_predicted = [&](const core::FramePose& pose) {
+      return prediction.allows(map, pose) &&
+             prediction.log_likelihood_ratio(map, pose) >= min_ratio;
+    };
+  }
+  Result result;
+  result.confirmed =
+      hypotheses_.evaluate(view, map, candidates, required, [&](const core::FramePose& pose) {
+        return is_reachable(map, pose, last, config_.track.relocalization.max_speed_m_s);
+      });
+  if (result.confirmed || config_.verify.prior == verify::Prior::kUnique) {
+    counts_.num_by_motion += result.confirmed && config_.verify.prior != verify::Prior::kUnique ? 1 : 0;
+    return result;
+  }
+  auto leading = hypotheses_.take_leading(config_.track.relocalization.min_views);
+  if (!leading) return result;
+  ++counts_.num_provisional;
+  core::FramePose pose = leading->best.track.pose;
+  const double by_motion = prediction.log_likelihood_ratio(map, pose);
+  provisional_.begin(std::move(*leading), by_motion, view);
+  pose.status = core::FrameStatus::kProvisional;
+  result.provisional = pose;
+  return result;
+}
+
+Relocalization::Result Relocalization::follow(const features::View& view,
+                                              const scene::MapVersion& map,
+                                              const std::vector<Place>* candidates) {
+  using enum ProvisionalRelocalization::Decision;
+  ProvisionalRelocalization::Result next = provisional_.evaluate(view, map, candidates);
+  Result result;
+  if (next.decision == kTakenBack) {
+    ++counts_.num_taken_back;
+    result.is_taken_back = true;
+    return result;
+  }
+  result.new_from_old = next.new_from_old;
+  result.reference = next.pose.reference_keyframe;
+  if (next.decision == kConfirmed) {
+    ++counts_.num_confirmed;
+    result.confirmed = std::move(next.confirmed);
+    return result;
+  }
+  result.provisional = next.pose;
+  return result;
 }
 
 bool Relocalization::is_undecided(double stamp_s, const core::FramePose* last_pose) const {
-  return hypotheses_.has_recent(num_views_required(config_, last_pose, stamp_s));
+  return is_provisional() ||
+         hypotheses_.has_recent(num_views_required(config_, last_pose, stamp_s));
 }
 
 }  // namespace samewhere::pipeline

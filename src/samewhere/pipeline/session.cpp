@@ -17,7 +17,7 @@ SessionPhase SessionState::phase() const {
   using enum SessionPhase;
   if (std::holds_alternative<NoMap>(state_)) return kInitializing;
   const TrackedFrame* last = last_frame();
-  if (last == nullptr) return kLost;
+  if (last == nullptr) return std::get<Lost>(state_).is_provisional ? kProvisional : kLost;
   switch (last->tracked.pose.status) {
     case core::FrameStatus::kWeak:
       return kWeak;
@@ -51,8 +51,15 @@ void SessionState::lose(std::uint64_t num_keyframes) {
   state_ = Lost{};
 }
 
+void SessionState::hold(std::uint64_t num_keyframes) {
+  core::require(is_lost(), "a relocalization is provisional after a loss");
+  lose(num_keyframes);
+  state_ = Lost{.is_provisional = true};
+}
+
 bool SessionState::may_reinitialize(double stamp_s, const MapAge& map) const {
-  if (!is_lost() || is_map_known_ || !is_map_provisional(stamp_s, map)) return false;
+  if (phase() != SessionPhase::kLost || is_map_known_ || !is_map_provisional(stamp_s, map))
+    return false;
   return depth_from_ == DepthFrom::kMotion ||
          num_lost_frames_ >= config_.relocalization.reinitialize_after_frames;
 }

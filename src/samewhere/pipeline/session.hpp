@@ -16,8 +16,8 @@ namespace samewhere::pipeline {
 enum class DepthFrom { kSensor, kMotion };
 
 // kInitializing: there is no map yet. kTracking, kWeak, kRelocalized: the last frame has a pose, of
-// this kind. kLost: it has none.
-enum class SessionPhase { kInitializing, kTracking, kWeak, kLost, kRelocalized };
+// this kind. kLost: it has none. kProvisional: it has one that may be in a look-alike place.
+enum class SessionPhase { kInitializing, kTracking, kWeak, kLost, kRelocalized, kProvisional };
 
 // The last frame with a pose, from which the next one is predicted.
 struct TrackedFrame {
@@ -31,7 +31,10 @@ struct TrackedFrame {
 //
 //   initializing -> initialize -> tracking
 //   tracking     -> track, lose, or as before
-//   lost         -> track (relocalized), lose, or initialize (re-initialization)
+//   lost         -> track (relocalized), hold, lose, or initialize (re-initialization)
+//   provisional  -> track (confirmed), hold, or lose (taken back)
+//
+// A provisional session is lost in all but its phase: nothing is written to the map.
 class SessionState {
  public:
   // A new map, of one camera if it is monocular.
@@ -43,7 +46,8 @@ class SessionState {
   SessionPhase phase() const;
   DepthFrom depth_from() const { return depth_from_; }
   bool is_initializing() const { return phase() == SessionPhase::kInitializing; }
-  bool is_lost() const { return phase() == SessionPhase::kLost; }
+  // Also while a relocalization is provisional.
+  bool is_lost() const { return std::holds_alternative<Lost>(state_); }
   // Of the frame before; nullptr: it has no pose.
   const TrackedFrame* last_frame() const { return std::get_if<TrackedFrame>(&state_); }
   TrackedFrame* last_frame() { return std::get_if<TrackedFrame>(&state_); }
@@ -56,6 +60,8 @@ class SessionState {
   void initialize(TrackedFrame first);
   // The frame has a pose. After a loss its status is kResumed.
   void track(TrackedFrame frame);
+  // The frame has a provisional pose. `num_keyframes`: inserted so far.
+  void hold(std::uint64_t num_keyframes);
   // The frame has no pose. `num_keyframes`: inserted so far.
   void lose(std::uint64_t num_keyframes);
 
@@ -71,7 +77,9 @@ class SessionState {
 
  private:
   struct NoMap {};
-  struct Lost {};
+  struct Lost {
+    bool is_provisional = false;
+  };
 
   bool is_map_provisional(double stamp_s, const MapAge& map) const;
 

@@ -77,6 +77,34 @@ TEST_F(SessionStateTest, IsRelocalizedAfterALoss) {
   EXPECT_EQ(state.tracked_since_keyframe(), 7U);
 }
 
+TEST_F(SessionStateTest, AProvisionalSessionIsLostUntilItIsConfirmed) {
+  SessionState state = tracking();
+  EXPECT_THROW(state.hold(7), core::ContractError) << "it is not lost";
+  state.lose(7);
+  state.hold(7);
+  EXPECT_EQ(state.phase(), Phase::kProvisional);
+  EXPECT_TRUE(state.is_lost());
+  EXPECT_EQ(state.last_frame(), nullptr) << "nothing is tracked as in a map";
+  state.hold(7);
+  state.track(frame_at(3.0, Status::kResumed));
+  EXPECT_EQ(state.phase(), Phase::kRelocalized);
+}
+
+TEST_F(SessionStateTest, ReinitializesOnceAProvisionalRelocalizationIsTakenBack) {
+  SessionState state = tracking();
+  for (int i = 0; i < config_.relocalization.reinitialize_after_frames; ++i) {
+    if (i < 3) {
+      state.lose(3);
+    } else {
+      state.hold(3);
+      EXPECT_FALSE(state.may_reinitialize(2.0, small_)) << "frame " << i;
+    }
+  }
+  state.lose(3);
+  EXPECT_EQ(state.phase(), Phase::kLost);
+  EXPECT_TRUE(state.may_reinitialize(2.0, small_)) << "the frames since the loss count";
+}
+
 TEST_F(SessionStateTest, IsReinitializedAfterALoss) {
   SessionState state = tracking();
   state.lose(7);

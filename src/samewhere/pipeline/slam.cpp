@@ -120,7 +120,7 @@ core::Trajectory placed(const scene::MapVersion& map, const std::vector<core::Fr
                         const WorldFromFrame& world_from_frame) {
   core::Trajectory trajectory;
   for (const auto& frame : frames) {
-    if (!frame.is_measured) continue;
+    if (!is_confirmed(frame)) continue;
     const core::Rigid3& body_from_camera =
         map.at(frame.reference_keyframe).view.rig->body_from_told_camera();
     trajectory.push_back({frame.stamp_s, world_from_frame(frame) * body_from_camera});
@@ -129,6 +129,11 @@ core::Trajectory placed(const scene::MapVersion& map, const std::vector<core::Fr
 }
 
 }  // namespace
+
+core::Rigid3 world_from_camera(const scene::MapVersion& map, const core::FramePose& frame) {
+  return scene::world_from_frame(map, frame) *
+         map.at(frame.reference_keyframe).view.rig->body_from_told_camera();
+}
 
 core::Trajectory trajectory_of(const scene::MapVersion& map,
                                const std::vector<core::FramePose>& frames) {

@@ -56,6 +56,8 @@ class Slam {
   const std::vector<track::ScaleDriftInterval>& scale_drift() const {
     return tracking_.scale_drift();
   }
+  // How the relocalizations of the session ended.
+  const RelocalizationCounts& relocalizations() const { return tracking_.relocalizations(); }
   // How often the map, with all its poses, was discarded for a new one.
   int num_reinitializations() const { return tracking_.num_reinitializations(); }
 
@@ -79,8 +81,10 @@ class Slam {
   bool is_broken_ = false;  // a stage has thrown
 };
 
-// Pose of camera 0 at each measured frame, after all corrections, derived from its reference
-// keyframe.
+// Pose of camera 0 at a frame that has one, provisional or not, after all corrections, derived from
+// its reference keyframe.
+core::Rigid3 world_from_camera(const scene::MapVersion& map, const core::FramePose& frame);
+// At each measured frame whose pose is not provisional.
 core::Trajectory trajectory_of(const scene::MapVersion& map,
                                const std::vector<core::FramePose>& frames);
 // The same without loop closures.

@@ -16,6 +16,10 @@ bool is_weak(const scene::TrackedView& tracked) {
   return tracked.pose.status == core::FrameStatus::kWeak;
 }
 
+bool is_provisional(const scene::TrackedView& tracked) {
+  return tracked.pose.status == core::FrameStatus::kProvisional;
+}
+
 bool is_missing_or_weak(const std::optional<scene::TrackedView>& tracked) {
   return !tracked || is_weak(*tracked);
 }
@@ -118,6 +122,7 @@ Tracking::MaybeTracked Tracking::localize(const core::Frame& frame, const featur
   if (is_led_by_odometry()) return follow_odometry(frame, view);
   if (state_.is_initializing()) return initialize(frame, view);
   MaybeTracked tracked = state_.is_lost() ? relocalize(frame, view) : track_in_map(frame, view);
+  if (tracked && !state_.is_lost() && !is_plausible(*tracked)) tracked.reset();
   if (!tracked && may_reinitialize(view)) {
     if (MaybeTracked first = initialize(frame, view)) return first;
   }
@@ -126,6 +131,10 @@ Tracking::MaybeTracked Tracking::localize(const core::Frame& frame, const featur
     return std::nullopt;
   }
   initialization_.reset();
+  if (is_provisional(*tracked)) {
+    state_.hold(mapping_.num_keyframes());
+    return tracked;
+  }
   switch_reference(*tracked);
   check_scale(*tracked);
   update_motion_model(frame, *tracked);
@@ -142,11 +151,11 @@ void Tracking::record(const core::Frame& frame, const features::View& view,
     return;
   }
   log_.add(map_.by_odometry(tracked->pose, state_.tracked_since_keyframe()));
-  if (!is_map_fixed_) passing_.see(frame, log_.newest());
+  if (!is_map_fixed_ && !is_provisional(*tracked)) passing_.see(frame, log_.newest());
 }
 
 void Tracking::insert_keyframe(const core::Frame& frame, const MaybeTracked& tracked) {
-  if (!tracked || is_map_fixed_) return;
+  if (!tracked || is_provisional(*tracked) || is_map_fixed_) return;
   if (mapping_.is_keyframe_in_progress() || mapping_.is_keyframe(frame.id)) return;
   if (is_worth_keeping(*tracked)) {
     send_keyframe(*tracked, frame.images[0]);
@@ -216,7 +225,7 @@ void Tracking::pose_earlier_frames(const InitialViews& initial) {
 }
 
 bool Tracking::may_reinitialize(const features::View& view) const {
-  const core::FramePose* last = log_.last_measured();
+  const core::FramePose* last = log_.last_confirmed();
   const SessionState::MapAge age{mapping_.num_keyframes_of_map(),
                                  last == nullptr ? std::nullopt : std::optional(last->stamp_s)};
   return state_.may_reinitialize(view.stamp_s, age) &&
@@ -249,6 +258,16 @@ core::Rigid3 Tracking::predicted_motion(const features::View& view) const {
   const auto measured =
       odometry_ ? odometry_->motion(last.tracked.view.stamp_s, view.stamp_s) : std::nullopt;
   return measured.value_or(last.last_from_next);
+}
+
+bool Tracking::is_plausible(const scene::TrackedView& tracked) const {
+  constexpr double kGap_s = 1.0;
+  const core::FramePose* last = log_.last_confirmed();
+  if (config_.verify.prior == verify::Prior::kUnique || last == nullptr) return true;
+  if (tracked.pose.stamp_s - last->stamp_s <= kGap_s) return true;
+  const scene::MapVersion& map = map_.version();
+  return MotionPrediction(map, {last, log_.before(*last)}, tracked.pose.stamp_s, metre_of(map))
+      .allows(map, tracked.pose);
 }
 
 Tracking::MaybeTracked Tracking::track_from_last(const features::View& view) const {
@@ -288,20 +307,55 @@ Tracking::MaybeTracked Tracking::track_by_depth(const core::Frame& frame,
                               map_.reference_from(last.tracked.pose) * last_from_this, *aligned));
 }
 
-Tracking::MaybeTracked Tracking::relocalize(const core::Frame& frame, const features::View& view) {
-  MapAnswer answer = mapping_.find_places(view, frame.images[0]);
+std::optional<std::vector<Place>> Tracking::places_for(const core::Frame& frame,
+                                                       const features::View& view) {
+  const bool is_provisional = relocalization_.is_provisional();
+  if (is_provisional && !mapping_.are_places_due(log_.size())) return std::nullopt;
+  MapAnswer answer =
+      is_provisional ? mapping_.receive_places() : mapping_.find_places(view, frame.images[0]);
   const bool has_changed = answer.map.number != map_.version().number;
   map_.set_version(std::move(answer.map));
   if (has_changed && map_.has_local_map())
     map_.set_reference(holder_of(map_.version(), map_.reference()).keyframe);
   // the last reference is a candidate, too
-  if (map_.has_local_map()) answer.places.push_back({map_.reference(), std::nullopt, true});
-  auto found = relocalization_.evaluate(view, map_.version(), answer.places, log_.last_measured());
-  if (!found) return std::nullopt;
-  map_.set_local_map(std::move(found->local_map));
-  scene::TrackedView tracked = map_.tracked_view(view, found->track);
+  if (map_.has_local_map() && !is_provisional)
+    answer.places.push_back({map_.reference(), std::nullopt, true});
+  return std::move(answer.places);
+}
+
+void Tracking::ask_for_places(const core::Frame& frame, const features::View& view) {
+  if (!relocalization_.wants_places() || mapping_.are_places_asked()) return;
+  mapping_.ask_places(view, frame.images[0]);
+  relocalization_.note_asked();
+}
+
+Tracking::MaybeTracked Tracking::relocalize(const core::Frame& frame, const features::View& view) {
+  const std::optional<std::vector<Place>> places = places_for(frame, view);
+  const core::FramePose* last = log_.last_confirmed();
+  const LastMotion motion{last, last == nullptr ? nullptr : log_.before(*last)};
+  auto result = relocalization_.evaluate(view, map_.version(), places ? &*places : nullptr, motion);
+  update_provisional(result);
+  ask_for_places(frame, view);
+  if (result.provisional) return scene::TrackedView{view, *result.provisional, {}, {}};
+  if (!result.confirmed) return std::nullopt;
+  map_.set_local_map(std::move(result.confirmed->local_map));
+  scene::TrackedView tracked = map_.tracked_view(view, result.confirmed->track);
   tracked.pose.status = core::FrameStatus::kResumed;
   return tracked;
+}
+
+void Tracking::update_provisional(const Relocalization::Result& result) {
+  if (result.new_from_old) {
+    log_.move_provisional([&](core::FramePose pose) {
+      const core::Rigid3 world_from_frame = *result.new_from_old * map_.world_from(pose);
+      pose.reference_keyframe = result.reference;
+      pose.reference_from_frame =
+          inverse(world_from_body(map_.version(), result.reference)) * world_from_frame;
+      return pose;
+    });
+  }
+  if (result.confirmed) log_.confirm_provisional(config_.track.weak_inliers);
+  if (result.is_taken_back) log_.take_back_provisional();
 }
 
 void Tracking::switch_reference(scene::TrackedView& tracked) {

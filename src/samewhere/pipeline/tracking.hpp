@@ -53,6 +53,8 @@ class Tracking {
   std::string why_not_initialized() const { return initialization_.why_not(); }
   // Monocular: where the scale is suspected to have drifted, in the order of time.
   const std::vector<track::ScaleDriftInterval>& scale_drift() const { return scale_drift_; }
+  // How the relocalizations of the session ended.
+  const RelocalizationCounts& relocalizations() const { return relocalization_.counts(); }
   // How often the map, with all its poses, was discarded for a new one.
   int num_reinitializations() const { return state_.num_reinitializations(); }
 
@@ -80,6 +82,17 @@ class Tracking {
                                InitialViews& initial);
   // Motion since the last frame: constant velocity, or odometry from a file.
   core::Rigid3 predicted_motion(const features::View& view) const;
+  // Places of the whole map that the view may show; while a relocalization is provisional, of a
+  // view some frames ago, and only where it wants them.
+  std::optional<std::vector<Place>> places_for(const core::Frame& frame,
+                                               const features::View& view);
+  void ask_for_places(const core::Frame& frame, const features::View& view);
+  // Of the provisional frames before this one.
+  void update_provisional(const Relocalization::Result& result);
+
+  // After a gap in the recording the camera may be in a look-alike place: whether motion predicted
+  // the pose.
+  bool is_plausible(const scene::TrackedView& tracked) const;
   MaybeTracked track_from_last(const features::View& view) const;
   // After the local map has changed: the pose with more inliers is kept.
   void track_again(const features::View& view, MaybeTracked& best) const;

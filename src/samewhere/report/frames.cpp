@@ -36,6 +36,12 @@ std::string_view status_of(std::string_view record) {
   return record.substr(record.rfind(',') + 1);
 }
 
+// Counted from 0 at the end: names may hold commas.
+std::string_view field_from_end(std::string_view record, int field) {
+  for (int i = 0; i < field; ++i) record = record.substr(0, record.rfind(','));
+  return record.substr(record.rfind(',') + 1);
+}
+
 // All fields of a record but those of the pose.
 std::string_view without_pose(std::string_view record) {
   for (int i = 0; i < kPoseFields; ++i) record = record.substr(0, record.rfind(','));
@@ -47,7 +53,7 @@ std::string_view without_pose(std::string_view record) {
 core::Trajectory measured_trajectory(const std::vector<FrameRecord>& frames) {
   core::Trajectory trajectory;
   for (const FrameRecord& frame : frames)
-    if (frame.world_from_camera)
+    if (frame.world_from_camera && is_confirmed(frame.pose))
       trajectory.push_back({frame.pose.stamp_s, *frame.world_from_camera});
   return trajectory;
 }
@@ -61,7 +67,7 @@ std::string frames_csv(const std::vector<FrameRecord>& frames) {
                                      : std::string();
     fmt::format_to(std::back_inserter(text), "{},{:.6f},{},{},{},{},{},{}\n", pose.frame.index(),
                    pose.stamp_s, core::csv_field(frame.name), core::name_of(pose.status),
-                   frame.world_from_camera ? 1 : 0, pose.num_inliers, keyframe,
+                   frame.world_from_camera && is_confirmed(pose) ? 1 : 0, pose.num_inliers, keyframe,
                    pose_fields(frame.world_from_camera));
   }
   return text;
@@ -91,7 +97,7 @@ std::string with_poses(const std::string& frames_csv, const core::Trajectory& tr
   std::string text;
   std::size_t num_measured = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const bool is_measured = i > 0 && !records[i].ends_with(pose_fields({}) + "\n");
+    const bool is_measured = i > 0 && field_from_end(without_pose(records[i]), 2) == "1";
     if (is_measured && num_measured < trajectory.size()) {
       const core::Rigid3& pose = trajectory[num_measured].world_from_camera;
       text += fmt::format("{},{}\n", without_pose(records[i]), pose_fields(pose));

@@ -27,7 +27,7 @@ std::string lead(const RunRecord& record, const Funnel& funnel) {
   if (!record.frames.empty()) {
     const auto num_measured =
         std::count_if(record.frames.begin(), record.frames.end(),
-                      [](const FrameRecord& frame) { return frame.world_from_camera.has_value(); });
+                      [](const FrameRecord& frame) { return is_confirmed(frame.pose); });
     text = fmt::format("{}, {} with a measured pose. ",
                        counted(static_cast<int>(record.frames.size()), "frame", "frames"),
                        num_measured);

@@ -85,8 +85,9 @@ svg text {
 .weak { fill: var(--maybe); background: var(--maybe); }
 .lost { fill: var(--no); background: var(--no); }
 .relocalized { fill: var(--resume); background: var(--resume); }
+.provisional { fill: var(--resume); background: var(--resume); opacity: 0.5; }
 .waiting { fill: var(--bar); background: var(--bar); }
-.legend li.initializing, .legend li.tracking, .legend li.weak, .legend li.lost, .legend li.relocalized,
+.legend li.initializing, .legend li.tracking, .legend li.weak, .legend li.lost, .legend li.relocalized, .legend li.provisional,
 .legend li.waiting {
   background: none;
 }

@@ -102,8 +102,10 @@ void record_frames(const pipeline::Slam& slam, const std::vector<std::string>& n
   std::size_t num_measured = 0;
   for (std::size_t i = 0; i < slam.frames().size(); ++i) {
     report::FrameRecord frame{slam.frames()[i], names[i], std::nullopt};
-    if (frame.pose.is_measured)
+    if (is_confirmed(frame.pose))
       frame.world_from_camera = trajectory[num_measured++].world_from_camera;
+    else if (frame.pose.is_measured)
+      frame.world_from_camera = pipeline::world_from_camera(slam.map(), frame.pose);
     record.frames.push_back(std::move(frame));
   }
 }
@@ -137,6 +139,13 @@ void add_known_thumbnails(const std::filesystem::path& map, report::RunRecord& r
 void note_first_pose(const pipeline::Slam& slam, report::RunRecord& record) {
   if (!record.first_pose_s && slam.frames().back().is_measured)
     record.first_pose_s = core::seconds_since_program_start();
+}
+
+report::Figure relocalizations_figure(const pipeline::Slam& slam) {
+  const pipeline::RelocalizationCounts& counts = slam.relocalizations();
+  return report::figure("provisional relocalizations, confirmed, taken back, open at the end",
+                        "{}, {}, {}, {}", counts.num_provisional, counts.num_confirmed,
+                        counts.num_taken_back, counts.num_open());
 }
 
 void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& names,
@@ -195,6 +204,7 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   record.figures.push_back(prior_figure(record.ledger, config.verify));
   record.figures.push_back(
       report::figure("re-initializations", "{}", slam.num_reinitializations()));
+  record.figures.push_back(relocalizations_figure(slam));
   record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
                                           num_live(slam.map().keyframes),
                                           num_live(slam.map().landmarks)));

@@ -100,6 +100,7 @@ struct RelocalizationConfig {
   double max_ratio_without_depth = 0.9;
   double max_competing_ratio = 0.75;
   int min_views = 5;
+  double min_log_ratio = 2.5;
   int reinitialize_after_frames = 30;
 };
 
@@ -118,9 +119,16 @@ inline void visit_fields(RelocalizationConfig& config, core::FieldVisitor& visit
          .min = 0.0,
          .max = 1.0});
   visit("min_views", config.min_views,
-        {.help = "views that must support the place; one is enough within 1 s of tracking loss",
+        {.help = "views that must support the place; `prior: unique`: one is enough within 1 s of "
+                 "tracking loss",
          .min = 1,
          .max = 10});
+  visit("min_log_ratio", config.min_log_ratio,
+        {.help = "`prior: repetitive`: logarithm of the likelihood ratio of the place, against a "
+                 "look-alike that is not in the map, that confirms a relocalization; negative: "
+                 "takes it back",
+         .min = 0.0,
+         .max = 100.0});
   visit("reinitialize_after_frames", config.reinitialize_after_frames,
         {.help = "with depth: lost frames after which a map with fewer than provisional_keyframes "
                  "is re-initialized",

@@ -1,0 +1,356 @@
+#include <algorithm>
+#include <utility>
+
+#include <samewhere/map/mapper.hpp>
+#include <samewhere/pipeline/provisional.hpp>
+
+namespace samewhere::pipeline {
+namespace {
+
+// A view counts as evidence after so much motion.
+constexpr double kStep_m = 0.2;
+constexpr double kStep_rad = 0.35;
+constexpr double kRetrieval_m = 0.5;  // between two retrievals
+constexpr std::size_t kRememberedViews = 30;
+constexpr std::size_t kMaxHypotheses = 8;
+constexpr int kMaxFailures = 3;     // evaluations of a hypothesis without a pose
+constexpr int kMaxUnmeasured = 15;  // views
+constexpr int kMinVisible = 30;     // landmarks; with fewer the map ends
+constexpr int kMinComparedViews = 2;
+constexpr double kMaxOtherRatio = 0.85;
+constexpr double kOvertakes = 1.15;  // inliers of another hypothesis, over those of the best
+
+bool is_step(const core::Rigid3& motion) {
+  return motion.translation.norm() >= kStep_m || core::angle_rad(motion.rotation) >= kStep_rad;
+}
+
+// Sees the same from another keyframe.
+void move_to(Place& known, const Place& place) {
+  const bool is_recognised = known.is_recognised || place.is_recognised;
+  known = place;
+  known.is_recognised = is_recognised;
+}
+
+// The features of a view as landmarks, for odometry from view to view.
+scene::LocalMap local_map_of(const features::View& view) {
+  scene::LocalMap local;
+  const features::Features& features = *view.features;
+  const core::Rigid3& body_from_camera = view.rig->body_from_camera[0];
+  std::vector<int> chosen;
+  for (int i = 0; i < features.size(); ++i) {
+    const auto point = features::point_in_camera(view, i);
+    if (!point) continue;
+    chosen.push_back(i);
+    local.landmarks.emplace_back(static_cast<std::uint64_t>(i));
+    local.points_in_reference.push_back(body_from_camera * *point);
+    local.range_m.push_back(point->norm());
+    local.octave.push_back(features.octave[static_cast<std::size_t>(i)]);
+  }
+  local.descriptors = cv::Mat(static_cast<int>(chosen.size()), 32, CV_8U);
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    features.descriptors.row(chosen[k]).copyTo(local.descriptors.row(static_cast<int>(k)));
+  local.num_near = local.size();
+  return local;
+}
+
+std::vector<core::LandmarkId> inliers_of(const RelocalizedPose& pose) {
+  std::vector<core::LandmarkId> ids;
+  for (const auto& match : pose.track.matches)
+    ids.push_back(pose.local_map.landmarks[static_cast<std::size_t>(match.first)]);
+  return ids;
+}
+
+}  // namespace
+
+ProvisionalRelocalization::ProvisionalRelocalization(const Config& config,
+                                                     const track::Tracker& tracker)
+    : config_(config), tracker_(tracker) {}
+
+void ProvisionalRelocalization::begin(LeadingHypotheses leading, double log_ratio_by_motion,
+                                      const features::View& view) {
+  hypotheses_.clear();
+  Hypothesis first;
+  first.place = place_of(leading.best);
+  first.place.is_recognised = true;
+  first.pose = std::move(leading.best);
+  hypotheses_.push_back(std::move(first));
+  for (const Place& place : leading.others) {
+    hypotheses_.emplace_back().place = place;
+    hypotheses_.back().since_step_m = kStep_m;  // evaluated soon
+    hypotheses_.back().since_step.translation.x() = kStep_m;
+  }
+  last_view_ = view;
+  last_motion_ = {};
+  log_ratio_by_motion_ = log_ratio_by_motion;
+  note_asked();
+  num_unmeasured_ = 0;
+}
+
+bool ProvisionalRelocalization::wants_places() const {
+  if (!is_active()) return false;
+  return since_asked_m_ >= kRetrieval_m || num_unmeasured_ > 0 ||
+         log_ratio(hypotheses_.front()) >= config_.track.relocalization.min_log_ratio;
+}
+
+void ProvisionalRelocalization::note_asked() {
+  since_asked_ = {};
+  since_asked_m_ = 0.0;
+}
+
+void ProvisionalRelocalization::track(Hypothesis& hypothesis, const Query& query) const {
+  const scene::MapVersion& map = query.map;
+  const Place& place = hypothesis.place;
+  const core::KeyframeId keyframe = hypothesis.pose ? nearest_keyframe(map, *hypothesis.pose)
+                                                    : holder_of(map, place.keyframe).keyframe;
+  const bool has_map = hypothesis.pose && hypothesis.pose->local_map.reference == keyframe;
+  scene::LocalMap local_map =
+      has_map ? std::move(hypothesis.pose->local_map) : map::local_map(map, keyframe, config_.map);
+  const core::Rigid3 guess =
+      inverse(scene::world_from_body(map, keyframe)) * world_from_body(map, place);
+  auto found = tracker_.track(query.view, local_map, guess);
+  hypothesis.pose.reset();
+  if (!found) return;
+  RelocalizedPose pose{std::move(local_map), std::move(*found)};
+  if (are_one_place(map, place, place_of(pose), median_distance(pose)))
+    hypothesis.pose = std::move(pose);
+}
+
+core::Rigid3 ProvisionalRelocalization::estimate_motion(const Place& before, const Query& query) {
+  Hypothesis& leader = best();
+  if (leader.pose)
+    return inverse(world_from_body(query.map, before)) *
+           world_from_body(query.map, place_of(*leader.pose));
+  const scene::LocalMap last = local_map_of(last_view_);
+  if (last.size() == 0) return last_motion_;
+  const auto track = tracker_.track(query.view, last, last_motion_);
+  return track ? track->pose.reference_from_frame : last_motion_;
+}
+
+void ProvisionalRelocalization::advance(const core::Rigid3& last_from_this, const Query& query) {
+  for (Hypothesis& hypothesis : hypotheses_) {
+    const bool is_measured = &hypothesis == &best() && hypothesis.pose;
+    const bool is_recognised = hypothesis.place.is_recognised;
+    if (is_measured)
+      hypothesis.place = place_of(*hypothesis.pose);
+    else
+      hypothesis.place.keyframe_from_body =
+          hypothesis.place.keyframe_from_body.value_or(core::Rigid3{}) * last_from_this;
+    hypothesis.place.is_recognised = is_recognised;
+    hypothesis.since_step = hypothesis.since_step * last_from_this;
+    hypothesis.since_step_m += last_from_this.translation.norm();
+  }
+  since_asked_ = since_asked_ * last_from_this;
+  since_asked_m_ += last_from_this.translation.norm();
+  last_motion_ = last_from_this;
+  last_view_ = query.view;
+}
+
+double ProvisionalRelocalization::found_ratio_of_mapping(const scene::LocalMap& local_map,
+                                                         const scene::MapVersion& map) {
+  constexpr double kUsual = 0.5;
+  if (std::exchange(map_number_, map.number) != map.number) found_ratios_.clear();
+  const auto [known, is_new] = found_ratios_.try_emplace(local_map.reference, kUsual);
+  if (is_new) known->second = pipeline::found_ratio_of_mapping(map, local_map).value_or(kUsual);
+  return known->second;
+}
+
+void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& query) const {
+  if (!hypothesis.views.empty() && hypothesis.views.back().frame == query.view.frame) return;
+  ViewEvidence of_view = measure_view(query.view, query.map, hypothesis.place,
+                                      hypothesis.pose ? &*hypothesis.pose : nullptr, config_.map);
+  of_view.is_comparable = of_view.total.num_visible >= kMinVisible;
+  hypothesis.views.push_back(std::move(of_view));
+  if (hypothesis.views.size() > kRememberedViews) hypothesis.views.erase(hypothesis.views.begin());
+}
+
+void ProvisionalRelocalization::add_step(Hypothesis& hypothesis, const Query& query) {
+  add_view(hypothesis, query);
+  const Counts& total = hypothesis.views.back().total;
+  PlaceView view{
+      .found_ratio = 0.0, .new_ratio = 1.0, .moved_m = hypothesis.since_step.translation.norm()};
+  if (hypothesis.pose) {
+    const std::vector<core::LandmarkId> inliers = inliers_of(*hypothesis.pose);
+    int num_new = 0;
+    for (const core::LandmarkId id : inliers) num_new += hypothesis.seen.insert(id).second ? 1 : 0;
+    view.new_ratio = static_cast<double>(num_new) / static_cast<double>(inliers.size());
+    view.found_ratio =
+        total.num_inliers / (found_ratio_of_mapping(hypothesis.pose->local_map, query.map) *
+                             std::max(1, total.num_visible));
+  }
+  if (total.num_visible >= kMinVisible) hypothesis.evidence.add(view);
+  hypothesis.num_failures = hypothesis.pose ? 0 : hypothesis.num_failures + 1;
+  hypothesis.since_step = {};
+  hypothesis.since_step_m = 0.0;
+}
+
+// The one that waits for longest, so that no frame takes much longer than another.
+void ProvisionalRelocalization::evaluate_one_other(const Query& query) {
+  const auto next = std::max_element(
+      hypotheses_.begin() + 1, hypotheses_.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.since_step_m < b.since_step_m; });
+  if (next == hypotheses_.end() || !is_step(next->since_step)) return;
+  track(*next, query);
+  const bool is_recognised = next->place.is_recognised;
+  if (next->pose) next->place = place_of(*next->pose);
+  next->place.is_recognised = is_recognised;
+  add_step(*next, query);
+  add_view(best(), query);
+  if (next->num_failures >= kMaxFailures) hypotheses_.erase(next);
+}
+
+// Hypotheses that have become one place: the better evidence is kept.
+void ProvisionalRelocalization::merge_equal(const scene::MapVersion& map) {
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    Hypothesis& kept = hypotheses_[i];
+    for (std::size_t k = hypotheses_.size() - 1; k > i; --k) {
+      Hypothesis& other = hypotheses_[k];
+      if (!kept.pose || !other.pose || other.views.empty() ||
+          !are_one_place(map, kept.place, other.place, median_distance(*kept.pose)))
+        continue;
+      kept.place.is_recognised |= other.place.is_recognised;
+      if (other.evidence.log_likelihood_ratio() > kept.evidence.log_likelihood_ratio()) {
+        kept.evidence = other.evidence;
+        kept.views = std::move(other.views);
+        kept.seen = std::move(other.seen);
+      }
+      hypotheses_.erase(hypotheses_.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+}
+
+void ProvisionalRelocalization::add_places(const std::vector<Place>& places, const Query& query) {
+  for (Place place : places) {
+    if (!place.keyframe_from_body) continue;
+    place.keyframe_from_body = *place.keyframe_from_body * since_asked_;
+    const double distance = best().pose ? median_distance(*best().pose) : 0.0;
+    const auto same = std::ranges::find_if(hypotheses_, [&](const Hypothesis& known) {
+      return are_one_place(query.map, known.place, place, distance);
+    });
+    if (same != hypotheses_.end()) {
+      same->place.is_recognised |= place.is_recognised;
+      // where it was, the map ends
+      if (same->pose && num_visible(*same) >= kMinVisible) continue;
+      move_to(same->place, place);
+      same->pose.reset();
+      continue;
+    }
+    if (hypotheses_.size() >= kMaxHypotheses) continue;
+    Hypothesis next;
+    next.place = place;
+    next.since_step_m = kStep_m;
+    next.since_step.translation.x() = kStep_m;
+    hypotheses_.push_back(std::move(next));
+  }
+}
+
+int ProvisionalRelocalization::num_visible(const Hypothesis& hypothesis) {
+  return hypothesis.views.empty() ? 0 : hypothesis.views.back().total.num_visible;
+}
+
+std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::MapVersion& map) {
+  const auto overtakes = [&](const Hypothesis& other) {
+    if (!other.pose || !other.place.is_recognised) return false;
+    if (num_unmeasured_ >= kMinComparedViews) return true;
+    const ComparedCounts sums = compare(other.views, best().views);
+    return sums.num_views >= kMinComparedViews &&
+           sums.a.num_inliers > kOvertakes * sums.b.num_inliers;
+  };
+  const auto next = std::find_if(hypotheses_.begin() + 1, hypotheses_.end(), overtakes);
+  if (next == hypotheses_.end()) return std::nullopt;
+  const core::Rigid3 new_from_old =
+      world_from_body(map, next->place) * inverse(world_from_body(map, best().place));
+  std::iter_swap(hypotheses_.begin(), next);
+  num_unmeasured_ = 0;
+  return new_from_old;
+}
+
+double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const {
+  double by_lookalike = 0.0;
+  for (const Hypothesis& other : hypotheses_) {
+    if (&other == &hypothesis || !other.place.is_recognised) continue;
+    const ComparedCounts sums = compare(other.views, hypothesis.views);
+    if (sums.num_views < kMinComparedViews || sums.b.num_inliers == 0) continue;
+    if (sums.a_in_all.num_inliers < config_.track.weak_inliers * sums.num_views) continue;
+    by_lookalike =
+        std::max(by_lookalike, log_ratio_by_lookalike(hypothesis.evidence.found_ratio(),
+                                                      1.0 * sums.a.num_inliers / sums.b.num_inliers,
+                                                      hypothesis.evidence.num_independent()));
+  }
+  return hypothesis.evidence.log_likelihood_ratio() + log_ratio_by_motion_ + by_lookalike;
+}
+
+bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {
+  // the likelihood ratio says how much less is less enough
+  const CompetingLimits limits{kMaxOtherRatio, config_.track.weak_inliers};
+  return std::ranges::none_of(hypotheses_, [&](const Hypothesis& other) {
+    if (&other == &hypothesis) return false;
+    return other.views.empty() ? other.place.is_recognised
+                               : is_competing(other.views, hypothesis.views, limits);
+  });
+}
+
+bool ProvisionalRelocalization::has_untracked_recognition(const std::vector<Place>& places,
+                                                          const scene::MapVersion& map) const {
+  return std::ranges::any_of(places, [&](const Place& place) {
+    if (!place.is_recognised || !place.keyframe_from_body) return false;
+    const Place now{place.keyframe, *place.keyframe_from_body * since_asked_, true};
+    return std::ranges::none_of(hypotheses_, [&](const Hypothesis& hypothesis) {
+      return hypothesis.pose &&
+             are_one_place(map, hypothesis.place, now, median_distance(*hypothesis.pose));
+    });
+  });
+}
+
+ProvisionalRelocalization::Decision ProvisionalRelocalization::decide(
+    const std::vector<Place>* places, const Query& query) const {
+  const Hypothesis& leader = hypotheses_.front();
+  const double required = config_.track.relocalization.min_log_ratio;
+  const double ratio = log_ratio(leader);
+  if (ratio <= -required || num_unmeasured_ >= kMaxUnmeasured) return Decision::kTakenBack;
+  const bool is_measured = leader.pose && leader.pose->track.pose.frame == query.view.frame;
+  if (ratio < required || places == nullptr || !is_measured) return Decision::kOpen;
+  if (leader.pose->track.pose.status == core::FrameStatus::kWeak) return Decision::kOpen;
+  if (!is_alone(leader) || has_untracked_recognition(*places, query.map)) return Decision::kOpen;
+  return Decision::kConfirmed;
+}
+
+core::FramePose ProvisionalRelocalization::pose_of(const Hypothesis& hypothesis,
+                                                   const Query& query) {
+  core::FramePose pose;
+  if (hypothesis.pose && hypothesis.pose->track.pose.frame == query.view.frame)
+    pose = hypothesis.pose->track.pose;
+  pose.frame = query.view.frame;
+  pose.stamp_s = query.view.stamp_s;
+  pose.status = core::FrameStatus::kProvisional;
+  pose.is_measured = true;
+  pose.reference_keyframe = hypothesis.place.keyframe;
+  pose.reference_from_frame = hypothesis.place.keyframe_from_body.value_or(core::Rigid3{});
+  pose.log_scale = query.map.at(pose.reference_keyframe).log_scale;
+  return pose;
+}
+
+ProvisionalRelocalization::Result ProvisionalRelocalization::evaluate(
+    const features::View& view, const scene::MapVersion& map, const std::vector<Place>* places) {
+  const Query query{view, map};
+  const Place before = best().place;
+  best().place.keyframe_from_body =
+      best().place.keyframe_from_body.value_or(core::Rigid3{}) * last_motion_;
+  track(best(), query);
+  const core::Rigid3 motion = estimate_motion(before, query);
+  best().place = before;
+  advance(motion, query);
+  num_unmeasured_ = best().pose ? 0 : num_unmeasured_ + 1;
+  if (is_step(best().since_step)) add_step(best(), query);
+  if (hypotheses_.size() > 1) evaluate_one_other(query);
+  merge_equal(map);
+  if (places != nullptr) add_places(*places, query);
+  Result result{
+      .decision = Decision::kOpen, .confirmed = {}, .pose = {}, .new_from_old = switch_best(map)};
+  result.decision = decide(places, query);
+  result.pose = pose_of(best(), query);
+  if (result.decision == Decision::kConfirmed) result.confirmed = std::move(best().pose);
+  if (result.decision != Decision::kOpen) reset();
+  return result;
+}
+
+}  // namespace samewhere::pipeline
