@@ -49,8 +49,10 @@ class Odometry : public testing::Test {
   }
 
   Outcome run(const std::string& arguments) const { return run_program(arguments, folder_.root()); }
-  Outcome run_tum(const std::string& more = "") const {
-    return run("run tum --odometry wheels.tum --out out " + more);
+  Outcome run_tum(const std::string& more = "") const { return run_into("out", more); }
+  Outcome run_into(const std::string& folder, const std::string& more) const {
+    return run("run " + quoted(path("tum")) + " --odometry " + quoted(path("wheels.tum")) +
+               " --out " + quoted(path(folder)) + " " + more);
   }
   std::filesystem::path path(const std::string& name) const { return folder_.root() / name; }
 
@@ -111,7 +113,8 @@ TEST_F(Odometry, ABadFileIsAnError) {
 
 TEST_F(Odometry, RecognitionAloneHasNoUseForIt) {
   write_odometry(0, kNumFrames - 1);
-  expect_error(run("loops tum --out out --set odometry.file=wheels.tum"),
+  expect_error(run("loops " + quoted(path("tum")) + " --out " + quoted(path("out")) +
+                   " --set odometry.file=" + quoted(path("wheels.tum"))),
                {"odometry.file", "samewhere run"});
 }
 
@@ -132,8 +135,8 @@ TEST_F(Odometry, OfOneCameraItGivesTheScale) {
 
 TEST_F(Odometry, InThreadsAndInTurnItGivesTheSameBytes) {
   write_odometry(0, kNumFrames - 1);
-  ASSERT_EQ(run("run tum --odometry wheels.tum --out a").exit_code, 0);
-  ASSERT_EQ(run("run tum --odometry wheels.tum --out b --set threads=false").exit_code, 0);
+  ASSERT_EQ(run_into("a", "").exit_code, 0);
+  ASSERT_EQ(run_into("b", "--set threads=false").exit_code, 0);
   for (const char* file : {"trajectory.tum", "frames.csv", "loops.json", "map.ply"})
     EXPECT_EQ(core::read_file(path(std::string("a/") + file)),
               core::read_file(path(std::string("b/") + file)))
@@ -142,10 +145,12 @@ TEST_F(Odometry, InThreadsAndInTurnItGivesTheSameBytes) {
 
 TEST_F(Odometry, TwinWritesItWithKnownErrorsFromATrajectory) {
   write_odometry(0, kNumFrames - 1);
-  const Outcome outcome = run("twin wheels.tum --odometry poor.tum --degrade 5%+slip");
+  const std::string command =
+      "twin " + quoted(path("wheels.tum")) + " --odometry " + quoted(path("poor.tum"));
+  const Outcome outcome = run(command + " --degrade 5%+slip");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(core::read_tum(path("poor.tum")).size(), 12U);
-  const Outcome unknown = run("twin wheels.tum --odometry poor.tum --degrade bad");
+  const Outcome unknown = run(command + " --degrade bad");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("--degrade bad"));
 }

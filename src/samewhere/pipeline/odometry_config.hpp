@@ -7,13 +7,13 @@
 namespace samewhere::pipeline {
 
 // What measured the odometry of a file: the row of the drift model (odometry_drift.cpp).
-// kFile: its own covariances.
+// kFile: the covariances of the file.
 enum class OdometrySensor { kFile, kWheel, kLeg, kInertial, kVisual, kPoor };
 
 // Odometry from a file (`samewhere run --odometry`).
 struct OdometryConfig {
   std::string file;
-  OdometrySensor sensor = OdometrySensor::kWheel;
+  OdometrySensor sensor = OdometrySensor::kFile;
   double drift_per_metre = 0.0;
   double drift_rad_per_metre = 0.0;
   double drift_rad_per_radian = 0.0;
@@ -60,8 +60,7 @@ inline void visit_fields(OdometryConfig& config, core::FieldVisitor& visit) {
         {.help = "odometry of the body, see `samewhere run --odometry`; empty: visual odometry"});
   visit(
       "sensor", config.sensor,
-      {.help = "what measured it: the drift model; `file`: the covariances of the file, if it has "
-               "any",
+      {.help = "what measured it: the drift model; `file`: its covariances or, without any, wheel",
        .choices = {"file", "wheel", "leg", "inertial", "visual", "poor"}});
   visit_drift(config, visit);
   visit("max_gap_s", config.max_gap_s,

@@ -259,9 +259,12 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   const auto source = read_ahead(for_slam(std::move(unbuffered), given), given);
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
-  const pipeline::Config config = with_window_in_frames(given, source->info());
+  pipeline::Config config = with_window_in_frames(given, source->info());
   std::optional<RunOdometry> odometry;
-  if (config.odometry.is_used()) odometry.emplace(config, source->info());
+  if (config.odometry.is_used()) {
+    odometry.emplace(config, source->info());
+    config.odometry = odometry->settings();
+  }
   RunOutcome outcome = start_outcome(config, source->info());
   const bool is_monocular = is_scale_free(source->info());
   MappedSlam mapped(

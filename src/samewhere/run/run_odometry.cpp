@@ -23,15 +23,15 @@ pipeline::Config with_odometry_sensor(pipeline::Config config) {
 }
 
 RunOdometry::RunOdometry(const pipeline::Config& config, const core::SourceInfo& source)
-    : file_(config.odometry.file), source_(source) {
+    : settings_(config.odometry), source_(source) {
   if (source.is_live && !source.is_video) {
-    throw core::InputError(file_ +
+    throw core::InputError(settings_.file +
                            ": odometry from a file needs a recording; found a live camera as "
                            "source");
   }
-  input::OdometryRows rows = input::read_odometry(file_);
-  const pipeline::OdometryConfig of_file = settled(config.odometry, rows);
-  path_ = std::make_shared<const pipeline::OdometryPath>(of_file, std::move(rows));
+  input::OdometryRows rows = input::read_odometry(settings_.file);
+  settings_ = settled(settings_, rows);
+  path_ = std::make_shared<const pipeline::OdometryPath>(settings_, std::move(rows));
 }
 
 void RunOdometry::see(const core::Frame& frame) {
@@ -53,15 +53,15 @@ std::string RunOdometry::no_overlap(double last_frame_s) const {
   return fmt::format(
       "{}: has rows from {:.3f} to {:.3f} s, the frames lie between {:.3f} and {:.3f} s; expected "
       "stamps of the same clock (images without stamps: names that are stamps, or a TUM rgb.txt)",
-      file_, path_->first_s(), path_->last_s(), *first_frame_s_, last_frame_s);
+      settings_.file, path_->first_s(), path_->last_s(), *first_frame_s_, last_frame_s);
 }
 
 report::Figure RunOdometry::figure() const {
   if (num_without_ > 0 && num_without_ < num_frames_) {
     spdlog::warn(
         "{}: {} of {} frames have no odometry (before, after or between rows more than "
-        "odometry.max_gap_s apart) and no pose",
-        file_, num_without_, num_frames_);
+        "odometry.max_gap_s apart); in a new map they have no pose",
+        settings_.file, num_without_, num_frames_);
   }
   return report::figure("frames without odometry", "{}", num_without_);
 }

@@ -23,6 +23,8 @@ class RunOdometry {
   // a file has no pose of what is yet to come.
   RunOdometry(const pipeline::Config& config, const core::SourceInfo& source);
 
+  // With the sensor as with_odometry_sensor() has it.
+  const pipeline::OdometryConfig& settings() const { return settings_; }
   const std::shared_ptr<const pipeline::OdometryPath>& path() const { return path_; }
   // Before the frame is worked on. Throws InputError at the first one if no later one can have
   // odometry: the stamps are those of another clock.
@@ -35,7 +37,7 @@ class RunOdometry {
  private:
   std::string no_overlap(double last_frame_s) const;
 
-  std::string file_;
+  pipeline::OdometryConfig settings_;
   core::SourceInfo source_;
   std::shared_ptr<const pipeline::OdometryPath> path_;
   std::optional<double> first_frame_s_;
