@@ -154,10 +154,13 @@ Trial walk_on(const Walk& walk, int start, const Settings& settings, pipeline::S
     const std::chrono::duration<double, std::milli> spent =
         std::chrono::steady_clock::now() - begin;
     const core::FramePose& pose = slam.frames().back();
+    // the first frame with a status was still LOST, or provisional, when it came
+    const bool is_second = !trial.poses.empty() && trial.poses.back().status == pose.status;
     trial.poses.push_back(pose);
-    if (pose.status == core::FrameStatus::kProvisional)
+    if (is_second && pose.status == core::FrameStatus::kProvisional)
       outcomes.provisional_ms.push_back(spent.count());
-    if (pose.status == core::FrameStatus::kTracking) outcomes.tracked_ms.push_back(spent.count());
+    if (is_second && pose.status == core::FrameStatus::kTracking)
+      outcomes.tracked_ms.push_back(spent.count());
     num_tracked += is_confirmed(pose) ? 1 : 0;
   }
   trial.counts = slam.relocalizations();

@@ -14,8 +14,10 @@ constexpr double kSigma_rad = 0.05;
 // A person that carries a camera.
 constexpr double kAcceleration_m_s2 = 2.0;
 constexpr double kAcceleration_rad_s2 = 3.0;
-constexpr double kSpeed_m_s = 1.0;  // where the last velocity is not known
+constexpr double kSpeed_m_s = 1.0;
 constexpr double kSpeed_rad_s = 1.0;
+// Between look-alike places: a camera that is lost for less than it takes is hardly in another.
+constexpr double kLookAlikes_m = 10.0;
 constexpr double kMaxGap_s = 0.5;  // between the frames that tell the velocity
 constexpr double kTwoPi = 6.283185307179586;
 
@@ -39,22 +41,24 @@ MotionPrediction::MotionPrediction(const scene::MapVersion& map, const LastMotio
   if (motion.last == nullptr) return;
   is_known_ = true;
   const double lost_s = std::max(0.0, stamp_s - motion.last->stamp_s);
+  walked_m_ = kSpeed_m_s * lost_s;
   world_from_body_ = world_from_frame(map, *motion.last);
-  double speed_sigma_m = kSpeed_m_s * lost_s;
-  double speed_sigma_rad = kSpeed_rad_s * lost_s;
+  bool is_velocity_known = false;
   if (motion.before != nullptr) {
     const double step_s = motion.last->stamp_s - motion.before->stamp_s;
     if (step_s > 0.0 && step_s <= kMaxGap_s) {
       const core::Vector6d step =
           core::log_r3so3(inverse(world_from_frame(map, *motion.before)) * world_from_body_);
       world_from_body_ = world_from_body_ * core::exp_r3so3(lost_s / step_s * step);
-      speed_sigma_m = 0.0;
-      speed_sigma_rad = 0.0;
+      is_velocity_known = true;
     }
   }
-  const double half_square = 0.5 * lost_s * lost_s;
-  sigma_ = metre * std::hypot(kSigma_m, speed_sigma_m, kAcceleration_m_s2 * half_square);
-  sigma_rad_ = std::hypot(kSigma_rad, speed_sigma_rad, kAcceleration_rad_s2 * half_square);
+  const auto grown = [&](double acceleration, double speed) {
+    const double of_speed = speed * lost_s;
+    return is_velocity_known ? std::min(0.5 * acceleration * lost_s * lost_s, of_speed) : of_speed;
+  };
+  sigma_ = metre * std::hypot(kSigma_m, grown(kAcceleration_m_s2, kSpeed_m_s));
+  sigma_rad_ = std::hypot(kSigma_rad, grown(kAcceleration_rad_s2, kSpeed_rad_s));
 }
 
 double MotionPrediction::chi_square(const scene::MapVersion& map,
@@ -68,14 +72,17 @@ bool MotionPrediction::allows(const scene::MapVersion& map, const core::FramePos
   return is_known_ && chi_square(map, pose) <= kChiSquare;
 }
 
-// On the ground, with a heading: the density of the prediction over that of the map.
+// On the ground, with a heading: the density of the prediction over that of the map, where the
+// look-alike of an unmapped place may be; and how likely the camera is to have reached one.
 double MotionPrediction::log_likelihood_ratio(const scene::MapVersion& map,
                                               const core::FramePose& pose) const {
   if (!is_known_) return 0.0;
   const double size = extent(map);
   const double area_ratio = size * size / (kTwoPi * sigma_ * sigma_);
   const double angle_ratio = kTwoPi / (std::sqrt(kTwoPi) * sigma_rad_);
-  const double at_mean = std::log(std::max(1.0, area_ratio) * std::max(1.0, angle_ratio));
+  const double way_ratio = kLookAlikes_m / std::max(walked_m_, 1e-3);
+  const double at_mean = std::log(std::max(1.0, area_ratio)) +
+                         std::log(std::max(1.0, angle_ratio)) + std::log(std::max(1.0, way_ratio));
   return std::max(at_mean - 0.5 * chi_square(map, pose), 0.0);
 }
 

@@ -36,6 +36,7 @@ class MotionPrediction {
   core::Rigid3 world_from_body_;
   double sigma_ = 0.0;  // of each coordinate, map units
   double sigma_rad_ = 0.0;
+  double walked_m_ = 0.0;  // what a person walks in the time lost
 };
 
 }  // namespace samewhere::pipeline

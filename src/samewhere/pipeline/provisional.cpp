@@ -2,6 +2,7 @@
 #include <utility>
 
 #include <samewhere/map/mapper.hpp>
+#include <samewhere/pipeline/motion_prediction.hpp>
 #include <samewhere/pipeline/provisional.hpp>
 
 namespace samewhere::pipeline {
@@ -20,8 +21,10 @@ constexpr int kMinComparedViews = 2;
 constexpr double kMaxOtherRatio = 0.85;
 constexpr double kOvertakes = 1.15;  // inliers of another hypothesis, over those of the best
 
-bool is_step(const core::Rigid3& motion) {
-  return motion.translation.norm() >= kStep_m || core::angle_rad(motion.rotation) >= kStep_rad;
+// `metre`: in map units.
+bool is_step(const core::Rigid3& motion, double metre) {
+  return motion.translation.norm() >= kStep_m * metre ||
+         core::angle_rad(motion.rotation) >= kStep_rad;
 }
 
 // Sees the same from another keyframe.
@@ -127,6 +130,7 @@ core::Rigid3 ProvisionalRelocalization::estimate_motion(const Place& before, con
 }
 
 void ProvisionalRelocalization::advance(const core::Rigid3& last_from_this, const Query& query) {
+  const double moved_m = last_from_this.translation.norm() / metre_of(query.map);
   for (Hypothesis& hypothesis : hypotheses_) {
     const bool is_measured = &hypothesis == &best() && hypothesis.pose;
     const bool is_recognised = hypothesis.place.is_recognised;
@@ -137,10 +141,10 @@ void ProvisionalRelocalization::advance(const core::Rigid3& last_from_this, cons
           hypothesis.place.keyframe_from_body.value_or(core::Rigid3{}) * last_from_this;
     hypothesis.place.is_recognised = is_recognised;
     hypothesis.since_step = hypothesis.since_step * last_from_this;
-    hypothesis.since_step_m += last_from_this.translation.norm();
+    hypothesis.since_step_m += moved_m;
   }
   since_asked_ = since_asked_ * last_from_this;
-  since_asked_m_ += last_from_this.translation.norm();
+  since_asked_m_ += moved_m;
   last_motion_ = last_from_this;
   last_view_ = query.view;
 }
@@ -166,8 +170,9 @@ void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& qu
 void ProvisionalRelocalization::add_step(Hypothesis& hypothesis, const Query& query) {
   add_view(hypothesis, query);
   const Counts& total = hypothesis.views.back().total;
-  PlaceView view{
-      .found_ratio = 0.0, .new_ratio = 1.0, .moved_m = hypothesis.since_step.translation.norm()};
+  PlaceView view{.found_ratio = 0.0,
+                 .new_ratio = 1.0,
+                 .moved_m = hypothesis.since_step.translation.norm() / metre_of(query.map)};
   if (hypothesis.pose) {
     const std::vector<core::LandmarkId> inliers = inliers_of(*hypothesis.pose);
     int num_new = 0;
@@ -188,7 +193,7 @@ void ProvisionalRelocalization::evaluate_one_other(const Query& query) {
   const auto next = std::max_element(
       hypotheses_.begin() + 1, hypotheses_.end(),
       [](const Hypothesis& a, const Hypothesis& b) { return a.since_step_m < b.since_step_m; });
-  if (next == hypotheses_.end() || !is_step(next->since_step)) return;
+  if (next == hypotheses_.end() || !is_step(next->since_step, metre_of(query.map))) return;
   track(*next, query);
   const bool is_recognised = next->place.is_recognised;
   if (next->pose) next->place = place_of(*next->pose);
@@ -340,7 +345,7 @@ ProvisionalRelocalization::Result ProvisionalRelocalization::evaluate(
   best().place = before;
   advance(motion, query);
   num_unmeasured_ = best().pose ? 0 : num_unmeasured_ + 1;
-  if (is_step(best().since_step)) add_step(best(), query);
+  if (is_step(best().since_step, metre_of(map))) add_step(best(), query);
   if (hypotheses_.size() > 1) evaluate_one_other(query);
   merge_equal(map);
   if (places != nullptr) add_places(*places, query);
