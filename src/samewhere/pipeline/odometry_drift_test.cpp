@@ -116,7 +116,9 @@ TEST_P(DriftOfChains, TheirCovarianceIsConsistentAtAnyLength) {
     const double nees = mean_nees(GetParam(), num_edges);
     RecordProperty("nees_" + std::to_string(num_edges), std::to_string(nees));
     EXPECT_LT(nees, 6.0) << num_edges << " edges";
-    if (num_edges <= 80) EXPECT_GT(nees, 0.03) << num_edges << " edges";
+    if (num_edges <= 80) {
+      EXPECT_GT(nees, 0.03) << num_edges << " edges";
+    }
   }
 }
 
