@@ -228,6 +228,18 @@ GeometryEvidence measure_epipolar(const View& query, const View& match,
   return evidence;
 }
 
+// Recognition alone: depth reaches fewer features than the image has, so that it adds a pose, and
+// does not replace the inliers.
+GeometryEvidence with_pose_of(const GeometryEvidence& by_depth, GeometryEvidence by_pixels,
+                              const Config& config) {
+  if (by_pixels.num_inliers < by_depth.num_inliers) return by_depth;
+  if (!has_geometry({.geometry = by_depth}, config)) return by_pixels;
+  by_pixels.match_from_query = by_depth.match_from_query;
+  by_pixels.pose_difference_m = by_depth.pose_difference_m;
+  by_pixels.pose_difference_rad = by_depth.pose_difference_rad;
+  return by_pixels;
+}
+
 }  // namespace
 
 GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& query,
@@ -239,11 +251,9 @@ GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& 
       query.rig->is_calibrated() && match.rig->is_calibrated() && has_depth(match);
   GeometryEvidence by_depth;
   if (can_have_pose) by_depth = measure_both_ways(query, match, matches, settings, random);
-  const bool is_without_map = may_need_sequences(settings.verify);
-  const bool is_enough = has_geometry({.geometry = by_depth}, settings.verify);
-  if (can_have_pose && (is_enough || !is_without_map)) return by_depth;
-  GeometryEvidence by_pixels = measure_epipolar(query, match, matches, settings.verify, random);
-  return can_have_pose && by_pixels.num_inliers <= by_depth.num_inliers ? by_depth : by_pixels;
+  if (can_have_pose && !may_need_sequences(settings.verify)) return by_depth;
+  return with_pose_of(by_depth, measure_epipolar(query, match, matches, settings.verify, random),
+                      settings.verify);
 }
 
 }  // namespace samewhere::verify

@@ -96,7 +96,9 @@ TEST(MeasureGeometry, InRecognitionAloneLittleDepthIsNoWorseThanNone) {
   EXPECT_FALSE(alone.match_from_query);
   EXPECT_GT(alone.num_inliers, 2 * with_map.num_inliers);
   settings.verify.min_inliers = with_map.num_inliers;
-  EXPECT_TRUE(measure_geometry(candidate(9, 0), query, match, settings).match_from_query);
+  const auto both = measure_geometry(candidate(9, 0), query, match, settings);
+  EXPECT_TRUE(both.match_from_query);
+  EXPECT_EQ(both.num_inliers, alone.num_inliers);
 }
 
 TEST(MeasureGeometry, TwoPlacesHaveFewInliers) {
