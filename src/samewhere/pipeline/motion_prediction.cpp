@@ -16,8 +16,8 @@ constexpr double kAcceleration_m_s2 = 2.0;
 constexpr double kAcceleration_rad_s2 = 3.0;
 constexpr double kSpeed_m_s = 1.0;
 constexpr double kSpeed_rad_s = 1.0;
-// Between look-alike places: a camera that is lost for less than it takes is hardly in another.
-constexpr double kLookAlikes_m = 10.0;
+// Between look-alike places. Both the camera and the look-alike pose are in reach of the last one.
+constexpr double kLookAlikes_m = 15.0;
 constexpr double kMaxGap_s = 0.5;  // between the frames that tell the velocity
 constexpr double kTwoPi = 6.283185307179586;
 
@@ -72,18 +72,18 @@ bool MotionPrediction::allows(const scene::MapVersion& map, const core::FramePos
   return is_known_ && chi_square(map, pose) <= kChiSquare;
 }
 
-// On the ground, with a heading: the density of the prediction over that of the map, where the
-// look-alike of an unmapped place may be; and how likely the camera is to have reached one.
+// On the ground, with a heading. First the density of the prediction over that of the map, where
+// the look-alike of an unmapped place may be; then how rarely look-alikes are so close.
 double MotionPrediction::log_likelihood_ratio(const scene::MapVersion& map,
                                               const core::FramePose& pose) const {
-  if (!is_known_) return 0.0;
+  if (!allows(map, pose)) return 0.0;
   const double size = extent(map);
   const double area_ratio = size * size / (kTwoPi * sigma_ * sigma_);
   const double angle_ratio = kTwoPi / (std::sqrt(kTwoPi) * sigma_rad_);
-  const double way_ratio = kLookAlikes_m / std::max(walked_m_, 1e-3);
-  const double at_mean = std::log(std::max(1.0, area_ratio)) +
-                         std::log(std::max(1.0, angle_ratio)) + std::log(std::max(1.0, way_ratio));
-  return std::max(at_mean - 0.5 * chi_square(map, pose), 0.0);
+  const double by_density = std::log(std::max(1.0, area_ratio)) +
+                            std::log(std::max(1.0, angle_ratio)) - 0.5 * chi_square(map, pose);
+  const double reach_ratio = kLookAlikes_m / std::max(2.0 * walked_m_, 1e-3);
+  return std::max(by_density, 0.0) + 2.0 * std::log(std::max(1.0, reach_ratio));
 }
 
 }  // namespace samewhere::pipeline

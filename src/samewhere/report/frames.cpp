@@ -67,8 +67,8 @@ std::string frames_csv(const std::vector<FrameRecord>& frames) {
                                      : std::string();
     fmt::format_to(std::back_inserter(text), "{},{:.6f},{},{},{},{},{},{}\n", pose.frame.index(),
                    pose.stamp_s, core::csv_field(frame.name), core::name_of(pose.status),
-                   frame.world_from_camera && is_confirmed(pose) ? 1 : 0, pose.num_inliers, keyframe,
-                   pose_fields(frame.world_from_camera));
+                   frame.world_from_camera && is_confirmed(pose) ? 1 : 0, pose.num_inliers,
+                   keyframe, pose_fields(frame.world_from_camera));
   }
   return text;
 }

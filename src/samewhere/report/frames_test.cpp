@@ -17,10 +17,9 @@ FrameRecord frame(std::uint64_t index, core::FrameStatus status, double x_m) {
   return record;
 }
 
-const std::vector<FrameRecord> kFrames = {frame(0, core::FrameStatus::kTracking, 1.0),
-                                          frame(1, core::FrameStatus::kLost, 0.0),
-                                          frame(2, core::FrameStatus::kProvisional, 2.0),
-                                          frame(3, core::FrameStatus::kResumed, 3.0)};
+const std::vector<FrameRecord> kFrames = {
+    frame(0, core::FrameStatus::kTracking, 1.0), frame(1, core::FrameStatus::kLost, 0.0),
+    frame(2, core::FrameStatus::kProvisional, 2.0), frame(3, core::FrameStatus::kResumed, 3.0)};
 
 TEST(Frames, AProvisionalPoseIsNotInTheTrajectory) {
   const core::Trajectory trajectory = measured_trajectory(kFrames);
