@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "test_images.hpp"
+#include <samewhere/core/errors.hpp>
 
 namespace samewhere::bench {
 namespace {
