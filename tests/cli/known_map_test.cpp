@@ -44,7 +44,7 @@ TEST_F(KnownMap, RelocalizationIsReportedAndShown) {
   EXPECT_THAT(found.out, HasSubstr("candidates in the loaded map / accepted"));
   EXPECT_THAT(found.out, testing::ContainsRegex("loop candidates  *0\n"))
       << "what no truth knows does not count";
-  EXPECT_THAT(run(fmt::format("ledger {} list --verdict LOOP", in("b"))).out,
+  EXPECT_THAT(run(fmt::format("ledger {} list --stage evidence", in("b"))).out,
               HasSubstr(" of session 0 "));
   EXPECT_THAT(core::read_file(path("b/report.html")),
               testing::ContainsRegex("<img src=\"data:[^>]*alt=\"frame [0-9]* of session 0\""));

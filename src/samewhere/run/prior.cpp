@@ -16,6 +16,7 @@ verify::Config with_other_prior(verify::Config config) {
 
 // Accepted by one prior and left ambiguous by the other. What the pose graph rejected stays so.
 bool is_decided_by_prior(const core::LedgerRow& row, const verify::Config& other) {
+  if (row.candidate.origin == core::Origin::kRelocalization) return false;  // a place, no loop
   const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
   if (other.prior == verify::Prior::kUnique)
     return ambiguous != nullptr && ambiguous->stage == core::Refusal::kEvidence;

@@ -21,9 +21,14 @@ bool is_by_hand(const core::Verdict& verdict) {
 }
 
 // The run stopped measuring at its own thresholds.
-bool is_unmeasured(const core::Evidence& evidence, const core::Verdict& after,
+bool is_unmeasured(const core::Verdict& before, const core::Verdict& after,
                    const verify::Config& config) {
+  const core::Evidence& evidence = core::evidence_of(before);
   if (verify::is_pending(after) && !evidence.sequence) return true;
+  // a run of an earlier version, which did not measure what tells a place from a look-alike
+  const bool is_earlier = evidence.odometry && !evidence.odometry->look_alike_gain &&
+                          core::stage_of(after) == "evidence";
+  if (is_earlier && core::is_loop(before)) return true;
   if (evidence.geometry || !config.require_geometry) return false;
   const auto* refused = std::get_if<core::Rejection>(&after);
   return refused == nullptr || refused->stage == core::Refusal::kMatches;
@@ -31,8 +36,7 @@ bool is_unmeasured(const core::Evidence& evidence, const core::Verdict& after,
 
 Replay outcome_of(const core::LedgerRow& before, const core::Verdict& after,
                   const verify::Config& config) {
-  const core::Evidence& evidence = core::evidence_of(before.verdict);
-  if (is_unmeasured(evidence, after, config)) return Replay::kUnmeasured;
+  if (is_unmeasured(before.verdict, after, config)) return Replay::kUnmeasured;
   if (is_refused_by_graph(before.verdict) && core::is_loop(after)) return Replay::kGraph;
   return core::is_loop(before.verdict) == core::is_loop(after) ? Replay::kSame : Replay::kChanged;
 }

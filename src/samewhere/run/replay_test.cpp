@@ -98,6 +98,14 @@ TEST(Replay, WhatNeverWaitedCannotBeSaidToHaveWaitedInVain) {
   EXPECT_EQ(replay({row}, {.require_pose = false})[0].outcome, Replay::kUnmeasured);
 }
 
+TEST(Replay, ALoopOfAnEarlierVersionLacksTheMeasurementOfItsPrior) {
+  core::LedgerRow row = verified(0, evidence(60));
+  auto& loop = std::get<core::LoopClosure>(row.verdict);
+  loop.evidence.odometry = core::OdometryEvidence{.mahalanobis_squared = 2.0};
+  EXPECT_EQ(replay({row}, {})[0].outcome, Replay::kUnmeasured);
+  EXPECT_EQ(replay({row}, {.prior = verify::Prior::kUnique})[0].outcome, Replay::kSame);
+}
+
 TEST(Replay, WhatTheGraphRefusedStaysRefused) {
   core::LedgerRow row = verified(0, evidence(60));
   row.verdict = core::Rejection{row.candidate.id, evidence(60), core::Refusal::kWithdrawn, "bent"};

@@ -8,6 +8,7 @@
 #include <samewhere/report/frames.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/run/run_metrics.hpp>
+#include <samewhere/verify/decide.hpp>
 
 namespace samewhere::run {
 namespace {
@@ -138,8 +139,10 @@ void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings
     return row->candidate.match.session() == row->candidate.query.session();
   });
   findings.num_of_known_map = static_cast<int>(rows.end() - own);
-  findings.num_known_places = static_cast<int>(std::count_if(
-      own, rows.end(), [](const core::LedgerRow* row) { return core::is_loop(row->verdict); }));
+  findings.num_known_places =
+      static_cast<int>(std::count_if(own, rows.end(), [](const core::LedgerRow* row) {
+        return verify::is_recognized(row->verdict);
+      }));
   rows.erase(own, rows.end());  // no truth knows the frames of another session
   findings.num_candidates = static_cast<int>(rows.size());
   findings.num_refused_by_graph = count_refused(rows, core::Refusal::kGraph);
@@ -160,7 +163,7 @@ void add_relocalized(const core::Ledger& ledger, const StampOf& stamp_of,
   for (const auto* row : report::final_rows(ledger)) {
     const core::Candidate& candidate = row->candidate;
     const bool is_told = candidate.origin == core::Origin::kRelocalization &&
-                         core::is_loop(row->verdict) &&
+                         verify::is_recognized(row->verdict) &&
                          candidate.match.session() == candidate.query.session();
     if (!is_told || !resumed.contains(candidate.query)) continue;
     const auto found = relocalization_of(loop_of(*row, stamp_of), findings.trajectory);

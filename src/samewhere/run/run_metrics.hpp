@@ -25,7 +25,7 @@ struct SlamFindings {
   core::Trajectory odometry;    // before any correction
   int num_candidates = 0;
   int num_of_known_map = 0;  // beside these: matches are frames of the map that the run started in
-  int num_known_places = 0;  // of those, accepted
+  int num_known_places = 0;  // of those, recognized: passed all checks but the evidence
   std::vector<evaluate::AcceptedLoop> loops;
   // Relocalizations, each with the place that was recognized in its view.
   std::vector<evaluate::AcceptedLoop> relocalized;
