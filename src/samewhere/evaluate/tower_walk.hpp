@@ -14,8 +14,8 @@ struct WalkPlace {
   std::string clip;  // one video clip
 };
 
-// Reads lines "image floor [clip]" (core::read_text_lines); without a clip each floor is one. Throws
-// InputError naming file and line on a line with fewer words.
+// Reads lines "image floor [clip]" (core::read_text_lines); without a clip each floor is one.
+// Throws InputError naming file and line on a line with fewer words.
 std::vector<WalkPlace> read_walk(const std::filesystem::path& path);
 
 // Accepted loops of a sequence through look-alike floors: every loop between two floors is false.

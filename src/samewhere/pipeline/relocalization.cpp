@@ -75,7 +75,8 @@ Relocalization::Result Relocalization::begin(const features::View& view,
         return is_reachable(map, pose, last, config_.track.relocalization.max_speed_m_s);
       });
   if (result.confirmed || config_.verify.prior == verify::Prior::kUnique) {
-    counts_.num_by_motion += result.confirmed && config_.verify.prior != verify::Prior::kUnique ? 1 : 0;
+    counts_.num_by_motion +=
+        result.confirmed && config_.verify.prior != verify::Prior::kUnique ? 1 : 0;
     return result;
   }
   auto leading = hypotheses_.take_leading(config_.track.relocalization.min_views);
