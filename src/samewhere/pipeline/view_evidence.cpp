@@ -52,6 +52,18 @@ void for_each_visible(const scene::LocalMap& local_map, const features::View& vi
   }
 }
 
+// Of one view, for two places.
+void add_view(const ViewEvidence& a, const ViewEvidence& b, ComparedCounts& sums) {
+  ++sums.num_views;
+  sums.a_in_all += a.total;
+  sums.b_in_all += b.total;
+  for (std::size_t i = 0; i < a.cells.size(); ++i) {
+    if (!are_comparable(a.cells[i], b.cells[i])) continue;
+    sums.a += a.cells[i];
+    sums.b += b.cells[i];
+  }
+}
+
 }  // namespace
 
 Place place_of(const RelocalizedPose& pose) {
@@ -131,16 +143,7 @@ ComparedCounts compare(const std::vector<ViewEvidence>& a, const std::vector<Vie
       of_a->frame < of_b->frame ? ++of_b : ++of_a;
       continue;
     }
-    if (of_a->is_comparable && of_b->is_comparable) {
-      ++sums.num_views;
-      sums.a_in_all += of_a->total;
-      sums.b_in_all += of_b->total;
-      for (std::size_t i = 0; i < of_a->cells.size(); ++i) {
-        if (!are_comparable(of_a->cells[i], of_b->cells[i])) continue;
-        sums.a += of_a->cells[i];
-        sums.b += of_b->cells[i];
-      }
-    }
+    if (of_a->is_comparable && of_b->is_comparable) add_view(*of_a, *of_b, sums);
     ++of_a;
     ++of_b;
   }

@@ -19,6 +19,19 @@ void add_score(Json& scores, const char* name, double value) {
   if (std::isfinite(value)) scores[name] = value;
 }
 
+void add_odometry(Json& scores, const core::OdometryEvidence& odometry) {
+  add_score(scores, "correction_m", odometry.correction_m);
+  add_score(scores, "correction_rad", odometry.correction_rad);
+  add_score(scores, "mahalanobis_squared", odometry.mahalanobis_squared);
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    if (value) add_score(scores, name, *value);
+  };
+  add("odometry_sigma_m", odometry.sigma_m);
+  add("look_alike_gain", odometry.look_alike_gain);
+  add("look_alike_gain_with_loops", odometry.look_alike_gain_with_loops);
+  add("mahalanobis_squared_with_loops", odometry.mahalanobis_squared_with_loops);
+}
+
 void add_competing_loop(Json& scores, const core::CompetingLoopEvidence& loop) {
   scores["competing_loop"] = loop.frame.index();
   add_score(scores, "competing_loop_apart_m", loop.apart_m);
@@ -62,21 +75,7 @@ Json scores_of(const core::Verdict& verdict) {
   Json scores = Json::object();
   add_score(scores, "similarity", evidence.similarity);
   if (evidence.geometry) add_geometry(scores, *evidence.geometry);
-  if (evidence.odometry) {
-    add_score(scores, "correction_m", evidence.odometry->correction_m);
-    add_score(scores, "correction_rad", evidence.odometry->correction_rad);
-    add_score(scores, "mahalanobis_squared", evidence.odometry->mahalanobis_squared);
-    if (evidence.odometry->sigma_m)
-      add_score(scores, "odometry_sigma_m", *evidence.odometry->sigma_m);
-    if (evidence.odometry->look_alike_gain)
-      add_score(scores, "look_alike_gain", *evidence.odometry->look_alike_gain);
-    if (evidence.odometry->look_alike_gain_with_loops)
-      add_score(scores, "look_alike_gain_with_loops",
-                *evidence.odometry->look_alike_gain_with_loops);
-    if (evidence.odometry->mahalanobis_squared_with_loops)
-      add_score(scores, "mahalanobis_squared_with_loops",
-                *evidence.odometry->mahalanobis_squared_with_loops);
-  }
+  if (evidence.odometry) add_odometry(scores, *evidence.odometry);
   if (evidence.deformation) {
     add_score(scores, "deformation_rmse_m", evidence.deformation->rmse_m);
     add_score(scores, "deformation_path_m", evidence.deformation->path_m);

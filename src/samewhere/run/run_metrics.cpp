@@ -131,6 +131,14 @@ Figure figure_of_drift(int num_edges, const evaluate::Consistency& drift) {
       drift.band_high, drift.median, drift.num_motions);
 }
 
+std::optional<int> num_aliased_matching(const SlamFindings& findings, const core::Truth& truth) {
+  if (truth.aliased_pairs.empty()) return std::nullopt;
+  return static_cast<int>(
+      std::count_if(findings.matching.begin(), findings.matching.end(), [&](const auto& pair) {
+        return evaluate::is_aliased_pair(truth.aliased_pairs, pair.query, pair.match);
+      }));
+}
+
 }  // namespace
 
 void add_loops(const core::Ledger& ledger, const StampOf& stamp_of, SlamFindings& findings) {
@@ -222,12 +230,7 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   }
   evaluation.num_refused_by_graph = findings.num_refused_by_graph;
   evaluation.num_withdrawn = findings.num_withdrawn;
-  if (!truth.aliased_pairs.empty()) {
-    evaluation.num_aliased_matching = static_cast<int>(
-        std::count_if(findings.matching.begin(), findings.matching.end(), [&](const auto& pair) {
-          return evaluate::is_aliased_pair(truth.aliased_pairs, pair.query, pair.match);
-        }));
-  }
+  evaluation.num_aliased_matching = num_aliased_matching(findings, truth);
   for (const auto& [num_edges, motions] : findings.odometry_chains) {
     if (const auto found = evaluate::consistency(motions, truth.trajectory))
       evaluation.drift_model[num_edges] = *found;

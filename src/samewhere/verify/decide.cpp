@@ -210,6 +210,18 @@ std::optional<core::Verdict> check_other_views(const Candidate& candidate, const
   return undecided;
 }
 
+// The first check of geometry, motion and other views that fails.
+std::optional<core::Verdict> failed_check(const Candidate& candidate, const Evidence& evidence,
+                                          const Config& config) {
+  if (const auto refused = check_geometry(candidate, evidence, config)) return *refused;
+  if (config.method == Method::kDeformation && evidence.deformation) {
+    const auto refused = check_deformation(candidate, evidence, config);
+    return refused ? std::optional<core::Verdict>(*refused) : std::nullopt;
+  }
+  if (const auto refused = check_odometry(candidate, evidence, config)) return *refused;
+  return check_other_views(candidate, evidence, config);
+}
+
 // A similarity, mapped into [0, 1).
 double below_1(double similarity) { return 0.499 * (1.0 + similarity); }
 
@@ -280,20 +292,11 @@ core::Verdict decide(const Candidate& candidate, const Evidence& evidence, const
     if (!config.require_geometry) return loop;
     return rejection(candidate, evidence, Refusal::kMatches, "geometry was not measured");
   }
-  auto refused = check_geometry(candidate, evidence, config);
-  const bool is_by_deformation = config.method == Method::kDeformation && evidence.deformation;
-  if (!refused)
-    refused = is_by_deformation ? check_deformation(candidate, evidence, config)
-                                : check_odometry(candidate, evidence, config);
-  if (refused && config.require_geometry) return *refused;
+  const auto failed = failed_check(candidate, evidence, config);
   // without required geometry a pose is used if it is good, and the loop is counted without one if
   // not
-  if (!refused) {
-    const auto undecided =
-        is_by_deformation ? std::nullopt : check_other_views(candidate, evidence, config);
-    if (undecided && config.require_geometry) return *undecided;
-    if (!undecided) add_edge(loop, config);
-  }
+  if (failed && config.require_geometry) return *failed;
+  if (!failed) add_edge(loop, config);
   // with depth it is 1, not about 1
   loop.scale_is_free = loop.match_from_query && loop.match_from_query->scale != 1.0;
   return loop;
