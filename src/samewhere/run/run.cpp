@@ -143,9 +143,9 @@ void note_first_pose(const pipeline::Slam& slam, report::RunRecord& record) {
 
 report::Figure relocalizations_figure(const pipeline::Slam& slam) {
   const pipeline::RelocalizationCounts& counts = slam.relocalizations();
-  return report::figure("provisional relocalizations, confirmed, taken back, open at the end",
-                        "{}, {}, {}, {}", counts.num_provisional, counts.num_confirmed,
-                        counts.num_taken_back, counts.num_open());
+  return report::figure(
+      "provisional relocalizations", "{}: confirmed {}, taken back {}, open at the end {}",
+      counts.num_provisional, counts.num_confirmed, counts.num_taken_back, counts.num_open());
 }
 
 void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& names,
