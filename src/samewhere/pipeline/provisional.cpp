@@ -163,7 +163,7 @@ void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& qu
   ViewEvidence of_view = measure_view(query.view, query.map, hypothesis.place,
                                       hypothesis.pose ? &*hypothesis.pose : nullptr, config_.map);
   of_view.is_comparable = of_view.total.num_visible >= kMinVisible;
-  hypothesis.views.push_back(std::move(of_view));
+  hypothesis.views.push_back(of_view);
   if (hypothesis.views.size() > kRememberedViews) hypothesis.views.erase(hypothesis.views.begin());
 }
 
