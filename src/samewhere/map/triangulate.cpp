@@ -157,8 +157,8 @@ class Pair {
 
 // The most covisible keyframes. Without depth and with metric odometry also the last before this
 // one: until they share landmarks, nothing else makes them neighbours.
-std::vector<core::KeyframeId> neighbours_of(const scene::MapVersion& map, core::KeyframeId keyframe,
-                                            const Config& config) {
+std::vector<core::KeyframeId> partners_of(const scene::MapVersion& map, core::KeyframeId keyframe,
+                                          const Config& config) {
   std::vector<core::KeyframeId> neighbours;
   const auto num_wanted = static_cast<std::size_t>(config.search_keyframes);
   for (const auto& covisible : covisible_keyframes(map, keyframe)) {
@@ -182,7 +182,7 @@ scene::Edit triangulate_landmarks(const scene::MapVersion& map, core::KeyframeId
   scene::Edit edit;
   const Keyframe& second = map.at(keyframe);
   std::vector<int> free = free_features(second, false);
-  for (const core::KeyframeId neighbour : neighbours_of(map, keyframe, config)) {
+  for (const core::KeyframeId neighbour : partners_of(map, keyframe, config)) {
     const Keyframe& first = map.at(neighbour);
     const Pair pair(map, first, second, config, features);
     for (const auto& match : pair.matches(free_features(first, true), free)) {
