@@ -12,8 +12,8 @@ namespace {
 constexpr double kStep_m = 0.2;
 constexpr double kStep_rad = 0.35;
 constexpr double kRetrieval_m = 0.5;  // between two retrievals
-constexpr std::size_t kRememberedViews = 30;
-constexpr std::size_t kMaxHypotheses = 8;
+constexpr std::size_t kViewsOfProvisional = 30;
+constexpr std::size_t kMaxProvisional = 8;
 constexpr int kMaxFailures = 3;     // evaluations of a hypothesis without a pose
 constexpr int kMaxUnmeasured = 15;  // views
 constexpr int kMinVisible = 30;     // landmarks; with fewer the map ends
@@ -164,7 +164,8 @@ void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& qu
                                       hypothesis.pose ? &*hypothesis.pose : nullptr, config_.map);
   of_view.is_comparable = of_view.total.num_visible >= kMinVisible;
   hypothesis.views.push_back(of_view);
-  if (hypothesis.views.size() > kRememberedViews) hypothesis.views.erase(hypothesis.views.begin());
+  if (hypothesis.views.size() > kViewsOfProvisional)
+    hypothesis.views.erase(hypothesis.views.begin());
 }
 
 void ProvisionalRelocalization::add_step(Hypothesis& hypothesis, const Query& query) {
@@ -239,7 +240,7 @@ void ProvisionalRelocalization::add_places(const std::vector<Place>& places, con
       same->pose.reset();
       continue;
     }
-    if (hypotheses_.size() >= kMaxHypotheses) continue;
+    if (hypotheses_.size() >= kMaxProvisional) continue;
     Hypothesis next;
     next.place = place;
     next.since_step_m = kStep_m;

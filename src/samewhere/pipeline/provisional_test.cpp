@@ -13,7 +13,7 @@ namespace {
 
 using Decision = ProvisionalRelocalization::Decision;
 
-const core::Rigid3 kFar{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
+const core::Rigid3 kFarRoom{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
 // Points are seen from there on until they leave the view, at similar distances.
 constexpr double kSight_m = 9.0;
 constexpr double kSide_m = 4.0;
@@ -160,7 +160,7 @@ class WithALookAlikeInTheMap : public ProvisionalRelocalizationTest {
  protected:
   void add_lookalike(double different_share) {
     lookalike_ = core::KeyframeId(map_.keyframes.size());
-    add_walk(map_, different_from(world_, 0.0, different_share), 16.0, kFar);
+    add_walk(map_, different_from(world_, 0.0, different_share), 16.0, kFarRoom);
   }
 
   core::KeyframeId lookalike_;
@@ -188,7 +188,7 @@ TEST_F(WithALookAlikeInTheMap, TheBestHypothesisTakesOverAndThePosesMove) {
   begin(lookalike_, {core::KeyframeId(0)});
   EXPECT_EQ(walk(world_, 0.0, 10.0).decision, Decision::kConfirmed);
   ASSERT_TRUE(new_from_old_);
-  EXPECT_LT((new_from_old_->translation + kFar.translation).norm(), 0.2);
+  EXPECT_LT((new_from_old_->translation + kFarRoom.translation).norm(), 0.2);
 }
 
 TEST_F(ProvisionalRelocalizationTest, BridgesBlankViewsByTheLastMotion) {

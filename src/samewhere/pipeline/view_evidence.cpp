@@ -17,7 +17,7 @@ constexpr double kOnePlace_rad = 0.35;
 constexpr double kMaxDistanceRatio = 1.3;
 // Of the visible landmarks of the hypothesis with most, in a view or a cell of it: with fewer, the
 // map ends there.
-constexpr double kMinVisibleRatio = 0.5;
+constexpr double kMinComparableRatio = 0.5;
 constexpr double kMargin_px = 8.0;  // no feature is detected closer to the image border
 constexpr int kMinExpected = 30;    // landmarks from which a share is measured
 
@@ -131,7 +131,7 @@ ViewEvidence measure_view(const features::View& view, const scene::MapVersion& m
 
 bool are_comparable(const Counts& a, const Counts& b) {
   return std::min(a.num_visible, b.num_visible) >=
-         kMinVisibleRatio * std::max(a.num_visible, b.num_visible);
+         kMinComparableRatio * std::max(a.num_visible, b.num_visible);
 }
 
 ComparedCounts compare(const std::vector<ViewEvidence>& a, const std::vector<ViewEvidence>& b) {
