@@ -179,6 +179,20 @@ void check_list_stands_alone(const CLI::App& command, const CLI::Option& list) {
   }
 }
 
+void add_odometry_options(CLI::App& sub, TwinCommand& command) {
+  CLI::Option* odometry = sub.add_option("--odometry", command.odometry,
+                                         "write odometry with known errors for `run --odometry`; "
+                                         "SOURCE may be a trajectory FILE.tum, too");
+  sub.add_option("--degrade", command.degrade,
+                 "its errors: a share of the distance (5%), heading drift (1deg/m), slip, outage, "
+                 "lift, or several joined by +")
+      ->capture_default_str()
+      ->needs(odometry);
+  sub.add_option("--odometry-seed", command.odometry_seed, "seed of its errors")
+      ->capture_default_str()
+      ->needs(odometry);
+}
+
 }  // namespace
 
 void add_twin_command(CLI::App& app) {
@@ -197,17 +211,7 @@ void add_twin_command(CLI::App& app) {
   sub->add_option("--similarity-sheet", command->similarity_sheet,
                   "JPEG file with a place and its look-alike at similarity 0, 0.5, 0.9 and 1, "
                   "regardless of SOURCE");
-  CLI::Option* odometry = sub->add_option("--odometry", command->odometry,
-                                          "write odometry with known errors for `run --odometry`; "
-                                          "SOURCE may be a trajectory FILE.tum, too");
-  sub->add_option("--degrade", command->degrade,
-                  "its errors: a share of the distance (5%), heading drift (1deg/m), slip, outage, "
-                  "lift, or several joined by +")
-      ->capture_default_str()
-      ->needs(odometry);
-  sub->add_option("--odometry-seed", command->odometry_seed, "seed of its errors")
-      ->capture_default_str()
-      ->needs(odometry);
+  add_odometry_options(*sub, *command);
   const CLI::Option* list =
       sub->add_flag("--list", command->is_list, "print the presets, one per line");
   add_config_options(*sub, command->config);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include <samewhere/core/ids.hpp>
 #include <samewhere/scene/bytes.hpp>
@@ -33,7 +34,7 @@ inline constexpr std::array kTables = {kHeader, kState,      kRig,    kKeyframe,
 inline constexpr auto kTablesBefore7 = [] {
   auto tables = kTables;
   for (const char*& table : tables)
-    if (table == kSuspendedLoop) table = kSuspendedLoopBefore7;
+    if (std::string_view(table) == kSuspendedLoop) table = kSuspendedLoopBefore7;
   return tables;
 }();
 
