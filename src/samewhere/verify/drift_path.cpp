@@ -48,8 +48,8 @@ Graph graph_of(const scene::MapVersion& map) {
   return graph;
 }
 
-// The edge by which each node is reached from `begin` at the least cost (Dijkstra 1959); itself
-// where it is not.
+// The edge by which each node is reached from `begin` at the least cost, and the node before
+// (Dijkstra 1959); no edge where it is not reached.
 struct Reached {
   std::vector<std::size_t> from;
   std::vector<const Edge*> by;
