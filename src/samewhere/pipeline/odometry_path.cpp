@@ -32,6 +32,39 @@ std::optional<Eigen::Vector3d> axis_of_turns(const OdometryRows& rows) {
   return solver.eigenvectors().col(2);
 }
 
+double extent_m(const OdometryRows& rows, const Eigen::Vector3d& direction) {
+  double least = 0.0;
+  double most = 0.0;
+  for (const OdometryRow& row : rows) {
+    const double along =
+        direction.dot(row.world_from_body.translation - rows.front().world_from_body.translation);
+    least = std::min(least, along);
+    most = std::max(most, along);
+  }
+  return most - least;
+}
+
+// Nothing if the rows leave every plane, or lie on a line and turn about no axis.
+std::optional<Eigen::Vector3d> normal_of(const OdometryRows& rows,
+                                         const std::optional<Eigen::Vector3d>& up) {
+  constexpr double kMaxThickness_m = 2e-3;
+  constexpr double kMinWidth_m = 0.2;
+  if (up && extent_m(rows, *up) <= kMaxThickness_m) return up;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const OdometryRow& row : rows) mean += row.world_from_body.translation;
+  mean /= static_cast<double>(rows.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const OdometryRow& row : rows) {
+    const Eigen::Vector3d from_mean = row.world_from_body.translation - mean;
+    scatter += from_mean * from_mean.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);  // ascending
+  const bool is_plane = extent_m(rows, normal) <= kMaxThickness_m &&
+                        extent_m(rows, solver.eigenvectors().col(1)) >= kMinWidth_m;
+  return is_plane ? std::optional(normal) : std::nullopt;
+}
+
 // The first row after the moment.
 OdometryRows::const_iterator first_after(const OdometryRows& rows, double stamp_s) {
   return std::upper_bound(rows.begin(), rows.end(), stamp_s,
@@ -50,6 +83,7 @@ OdometryPath::OdometryPath(const OdometryConfig& config, OdometryRows rows)
   uses_covariances_ = config.sensor == OdometrySensor::kFile;
   core::require(!uses_covariances_ || has_covariances(rows_), "the file has covariances");
   up_in_world_ = axis_of_turns(rows_);
+  normal_in_world_ = normal_of(rows_, up_in_world_);
 }
 
 core::Rigid3 OdometryPath::interpolated(double stamp_s) const {
@@ -77,6 +111,11 @@ geometry::UncertainPose OdometryPath::motion(double from_s, double to_s) const {
     return {between.before_from_after, step_covariance(between, rates_, config_)};
   return {between.before_from_after,
           covariance_by_rows(from_s, to_s) + gap_covariance(between.gap_s, config_)};
+}
+
+std::optional<Eigen::Vector3d> OdometryPath::normal_in_body(double stamp_s) const {
+  if (!normal_in_world_) return std::nullopt;
+  return interpolated(stamp_s).rotation.conjugate() * *normal_in_world_;
 }
 
 // Of a gap longer than max_gap_s the motion at its ends is known, what lies between is not.

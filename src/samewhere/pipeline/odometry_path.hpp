@@ -30,6 +30,13 @@ class OdometryPath {
   // `from` with its covariance, without what of the drift is constant over the run.
   geometry::UncertainPose motion(double from_s, double to_s) const;
 
+  // Of the time between two moments, how much lies in gaps longer than OdometryConfig::max_gap_s.
+  double gap_s(double from_s, double to_s) const { return step(from_s, to_s).gap_s; }
+
+  // If the positions of all rows lie in a plane: its normal in the body at a moment that has a
+  // pose. Such odometry measures no height.
+  std::optional<Eigen::Vector3d> normal_in_body(double stamp_s) const;
+
  private:
   core::Rigid3 interpolated(double stamp_s) const;
   OdometryStep step(double from_s, double to_s) const;
@@ -41,6 +48,7 @@ class OdometryPath {
   DriftRates rates_;
   // Axis of the file's world that the body turns about; none: no single one.
   std::optional<Eigen::Vector3d> up_in_world_;
+  std::optional<Eigen::Vector3d> normal_in_world_;  // of the plane that the positions lie in
 };
 
 }  // namespace samewhere::pipeline

@@ -98,5 +98,33 @@ TEST(DriftRates, SettingsReplaceThoseOfTheSensor) {
   EXPECT_TRUE(systematic_drift({}).is_none()) << "without a file";
 }
 
+// A square of 4 m, with a height by time.
+OdometryPath square_of(const std::function<double(int)>& height_m) {
+  input::OdometryRows rows;
+  for (int i = 0; i <= 40; ++i) {
+    const double along_m = 0.1 * (i % 10);
+    const int side = (i / 10) % 4;
+    const double x = side == 0 ? along_m : side == 1 ? 1.0 : side == 2 ? 1.0 - along_m : 0.0;
+    const double y = side == 0 ? 0.0 : side == 1 ? along_m : side == 2 ? 1.0 : 1.0 - along_m;
+    rows.push_back(
+        {0.1 * i, {core::exp_so3({0.0, 0.0, 0.1 * i}), Eigen::Vector3d(x, y, height_m(i))}, {}});
+  }
+  return {config_of(), rows};
+}
+
+TEST(OdometryPath, PositionsInAPlaneMeasureNoHeight) {
+  const auto normal = square_of([](int) { return 0.7; }).normal_in_body(1.0);
+  ASSERT_TRUE(normal);
+  EXPECT_NEAR(std::abs(normal->z()), 1.0, 1e-6);
+  EXPECT_FALSE(square_of([](int i) { return 0.01 * i; }).normal_in_body(1.0)) << "a screw";
+  EXPECT_FALSE(square_of([](int i) { return 0.005 * (i % 3); }).normal_in_body(1.0)) << "steps";
+}
+
+TEST(OdometryPath, ALineThatTurnsAboutNoAxisHasNoPlane) {
+  input::OdometryRows rows;
+  for (int i = 0; i < 5; ++i) rows.push_back({0.1 * i, {{}, Eigen::Vector3d(0.1 * i, 0, 0)}, {}});
+  EXPECT_FALSE(OdometryPath(config_of(), rows).normal_in_body(0.1));
+}
+
 }  // namespace
 }  // namespace samewhere::pipeline

@@ -2,6 +2,7 @@
 
 #include <samewhere/geometry/camera.hpp>
 #include <samewhere/map/mapper.hpp>
+#include <samewhere/pipeline/odometry_images.hpp>
 #include <samewhere/pipeline/odometry_tracking.hpp>
 
 namespace samewhere::pipeline {
@@ -17,20 +18,30 @@ bool is_near(const features::View& view, const Eigen::Vector3d& point_in_body, i
                  .norm() <= radius_px;
 }
 
-// Matches that agree with one pose; those far from where odometry puts them are left out.
-std::vector<features::Match> matches_of(const features::View& view, const scene::LocalMap& map,
-                                        const core::Rigid3& reference_from_body,
-                                        const track::Tracker& tracker, double radius_px) {
-  std::vector<features::Match> near;
-  if (map.size() == 0) return near;
-  const auto track = tracker.track(view, map, reference_from_body);
-  if (!track) return near;
+// By features, without those far from where odometry puts their landmarks. Nothing if too few are
+// left.
+std::optional<track::Track> track_near(const features::View& view, const scene::LocalMap& map,
+                                       const core::Rigid3& reference_from_body,
+                                       const track::Tracker& tracker, const Config& config) {
+  if (map.size() == 0) return std::nullopt;
+  auto track = tracker.track(view, map, reference_from_body);
+  if (!track) return std::nullopt;
   const core::Rigid3 body_from_reference = inverse(reference_from_body);
-  for (const features::Match& match : track->matches) {
+  std::erase_if(track->matches, [&](const features::Match& match) {
     const Eigen::Vector3d& point = map.points_in_reference[static_cast<std::size_t>(match.first)];
-    if (is_near(view, body_from_reference * point, match.second, radius_px)) near.push_back(match);
-  }
-  return near;
+    return !is_near(view, body_from_reference * point, match.second,
+                    config.odometry.search_radius_px);
+  });
+  if (static_cast<int>(track->matches.size()) < config.track.min_inliers) return std::nullopt;
+  return track;
+}
+
+// Without depth its lengths are no metres.
+std::optional<geometry::UncertainPose> metric_motion(const std::optional<track::Track>& track,
+                                                     const scene::MapVersion& map) {
+  if (!track || scene::is_without_depth(map)) return std::nullopt;
+  return geometry::UncertainPose{track->pose.reference_from_frame,
+                                 track->pose.information.inverse()};
 }
 
 }  // namespace
@@ -42,24 +53,34 @@ std::optional<core::Rigid3> OdometryTracking::motion(double from_s, double to_s)
   return inverse(*world_from_first) * *world_from_last;
 }
 
-scene::TrackedView OdometryTracking::track(const features::View& view, const VisibleMap& map,
-                                           const track::Tracker& tracker) const {
+std::optional<scene::TrackedView> OdometryTracking::track(const features::View& view,
+                                                          const VisibleMap& map,
+                                                          const core::Rigid3& guessed,
+                                                          const track::Tracker& tracker) const {
   const scene::Keyframe& newest = map.version().keyframes.back();
-  const geometry::UncertainPose motion = path_->motion(newest.view.stamp_s, view.stamp_s);
+  const double from_s = newest.view.stamp_s;
+  const bool is_in_gap = !has_pose(view.stamp_s);
+  const OdometryMotion moved{.before_from_after = path_->motion(from_s, view.stamp_s),
+                             .duration_s = view.stamp_s - from_s,
+                             .has_gap = is_in_gap || path_->gap_s(from_s, view.stamp_s) > 0.0,
+                             .normal_in_before = path_->normal_in_body(from_s)};
+  const auto seen =
+      track_near(view, map.local_map(), moved.has_gap ? guessed : moved.before_from_after.a_from_b,
+                 tracker, config_);
+  const auto images = metric_motion(seen, map.version());
+  if (is_in_gap && !images) return std::nullopt;
+  const geometry::UncertainPose motion =
+      combine_with_images(moved, images, systematic_drift(config_.odometry));
   track::Track track;
-  track.matches = matches_of(view, map.local_map(), motion.a_from_b, tracker,
-                             config_.odometry.search_radius_px);
-  const auto num_matches = static_cast<int>(track.matches.size());
-  const bool is_weak = num_matches < config_.track.min_inliers;
-  if (is_weak) track.matches.clear();
+  if (seen) track.matches = seen->matches;
   track.pose = {.frame = view.frame,
                 .stamp_s = view.stamp_s,
-                .status = is_weak ? core::FrameStatus::kWeak : core::FrameStatus::kTracking,
+                .status = seen ? core::FrameStatus::kTracking : core::FrameStatus::kWeak,
                 .is_measured = true,
                 .reference_keyframe = newest.id,
                 .reference_from_frame = motion.a_from_b,
                 .information = motion.covariance.inverse(),
-                .num_inliers = num_matches};
+                .num_inliers = static_cast<int>(track.matches.size())};
   return map.tracked_view(view, track);
 }
 

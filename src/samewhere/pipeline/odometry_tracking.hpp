@@ -11,7 +11,8 @@
 namespace samewhere::pipeline {
 
 // Frames posed by odometry from a file: the pose of the newest keyframe, composed with the motion
-// since. Features only tell which landmarks a view shows; no visual pose replaces that of odometry.
+// since. Features tell which landmarks a view shows, and what odometry in a plane does not measure
+// (odometry_images.hpp); no visual pose replaces that of odometry.
 class OdometryTracking {
  public:
   OdometryTracking(const Config& config, std::shared_ptr<const OdometryPath> path)
@@ -21,10 +22,12 @@ class OdometryTracking {
   // Of the body at `to` in that at `from`; nothing if one of them has no pose.
   std::optional<core::Rigid3> motion(double from_s, double to_s) const;
 
-  // The view, which has a pose, relative to the newest keyframe. Weak: too few of its features show
-  // landmarks for a visual pose; then it has none.
-  scene::TrackedView track(const features::View& view, const VisibleMap& map,
-                           const track::Tracker& tracker) const;
+  // The view relative to the newest keyframe. Weak: too few of its features show landmarks for a
+  // visual pose; then it has none. In a gap of odometry features give the pose, near `guessed` of
+  // the body in the reference of the map; nothing if they cannot.
+  std::optional<scene::TrackedView> track(const features::View& view, const VisibleMap& map,
+                                          const core::Rigid3& guessed,
+                                          const track::Tracker& tracker) const;
 
   // Far enough from the newest keyframe, or with other landmarks.
   bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked) const;

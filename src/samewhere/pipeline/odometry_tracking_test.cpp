@@ -1,3 +1,5 @@
+#include <functional>
+
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/core/utility.hpp>
@@ -34,11 +36,20 @@ std::shared_ptr<const OdometryPath> path_of(const core::Trajectory& odometry,
   return std::make_shared<const OdometryPath>(config.odometry, std::move(rows));
 }
 
-void walk(Slam& slam, const Config& config, const core::Trajectory& odometry) {
+using IsDark = std::function<bool(std::uint64_t index)>;
+
+void walk(Slam& slam, const Config& config, const core::Trajectory& odometry,
+          const IsDark& is_dark = {}) {
   cv::setNumThreads(1);
   slam.follow(path_of(odometry, config));
   const auto source = twin::open_twin(config.source, config.twin);
-  while (const auto frame = source->next()) slam.feed(*frame);
+  while (auto frame = source->next()) {
+    if (is_dark && is_dark(frame->id.index())) {
+      frame->images[0] = cv::Mat::zeros(frame->images[0].size(), frame->images[0].type());
+      frame->depth_m.reset();
+    }
+    slam.feed(*frame);
+  }
   slam.finish();
 }
 
@@ -86,14 +97,35 @@ TEST(OdometryTracking, InThreadsAndInTurnTheSameBits) {
   EXPECT_FALSE(first.map().loops.empty()) << "without a loop this shows little";
 }
 
-TEST(OdometryTracking, AGapLeavesFramesWithoutAPoseAndAnUncertainEdge) {
+// A walk with rows missing for frames 10 to 14.
+Config walk_with_gap(core::Trajectory& odometry) {
   Config config = short_walk();
   config.close_loops = false;
   config.odometry.max_gap_s = 0.1;
-  core::Trajectory odometry = true_poses(config);
+  odometry = true_poses(config);
   odometry.erase(odometry.begin() + 10, odometry.begin() + 15);
+  return config;
+}
+
+TEST(OdometryTracking, InAGapImagesGiveThePoses) {
+  core::Trajectory odometry;
+  const Config config = walk_with_gap(odometry);
   Slam slam(config);
   walk(slam, config, odometry);
+  const core::Trajectory trajectory = trajectory_of(slam.map(), slam.frames());
+  ASSERT_EQ(trajectory.size(), 24U);
+  EXPECT_LT(farthest_m(trajectory, true_poses(config)), 0.02);
+  for (std::size_t k = 1; k < slam.map().keyframes.size(); ++k) {
+    const core::Matrix6d covariance = slam.map().keyframes[k].odometry->information.inverse();
+    EXPECT_LT(std::sqrt(covariance(0, 0)), 0.05) << "keyframe " << k;
+  }
+}
+
+TEST(OdometryTracking, ADarkGapLeavesFramesWithoutAPoseAndAnUncertainEdge) {
+  core::Trajectory odometry;
+  const Config config = walk_with_gap(odometry);
+  Slam slam(config);
+  walk(slam, config, odometry, [](std::uint64_t index) { return index >= 10 && index <= 15; });
   for (std::size_t i = 0; i < slam.frames().size(); ++i)
     EXPECT_EQ(slam.frames()[i].is_measured, i < 10 || i >= 15) << "frame " << i;
   EXPECT_EQ(slam.phase(), SessionPhase::kTracking) << "no relocalization is needed";
@@ -103,6 +135,35 @@ TEST(OdometryTracking, AGapLeavesFramesWithoutAPoseAndAnUncertainEdge) {
     largest =
         std::max(largest, slam.map().keyframes[k].odometry->information.inverse().eval()(0, 0));
   EXPECT_GT(std::sqrt(largest), config.odometry.gap_per_s * gap_s);
+}
+
+// As the floor indicator of a lift: with planar odometry only images tell the height.
+TEST(OdometryTracking, OfOdometryInAPlaneAnUnseenHeightIsUnknown) {
+  Config config = short_walk();
+  config.close_loops = false;
+  core::Trajectory odometry = true_poses(config);
+  for (auto& pose : odometry) pose.world_from_camera.translation.z() = 1.5;
+  // later it turns a corner: a line alone has no plane
+  odometry.push_back(odometry.back());
+  odometry.back().stamp_s += 10.0;
+  odometry.back().world_from_camera.translation += Eigen::Vector3d(2.0, 2.0, 0.0);
+  const auto height_sigma_m = [&](const IsDark& is_dark) {
+    Slam slam(config);
+    walk(slam, config, odometry, is_dark);
+    double largest = 0.0;
+    for (std::size_t k = 1; k < slam.map().keyframes.size(); ++k) {
+      const scene::Keyframe& keyframe = slam.map().keyframes[k];
+      const Eigen::Vector3d up =
+          inverse(odometry[slam.map().keyframes[k - 1].view.frame.index()].world_from_camera)
+              .rotation *
+          Eigen::Vector3d::UnitZ();
+      const core::Matrix6d covariance = keyframe.odometry->information.inverse();
+      largest = std::max(largest, up.dot(covariance.topLeftCorner<3, 3>() * up));
+    }
+    return std::sqrt(largest);
+  };
+  EXPECT_LT(height_sigma_m({}), 0.06);
+  EXPECT_GT(height_sigma_m([](std::uint64_t index) { return index >= 10; }), 0.12);
 }
 
 TEST(OdometryTracking, OneCameraTriangulatesInMetres) {

@@ -186,16 +186,18 @@ scene::TrackedView Tracking::begin_map(const core::Frame& frame, const features:
 
 Tracking::MaybeTracked Tracking::follow_odometry(const core::Frame& frame,
                                                  const features::View& view) {
-  if (!odometry_->has_pose(view.stamp_s)) return std::nullopt;
   if (state_.is_initializing()) {
+    if (!odometry_->has_pose(view.stamp_s)) return std::nullopt;
     const int num_landmarks = map::num_with_depth(view);
     // the first keyframe says whether the camera measures depth
     if (!initialization_.is_monocular() && num_landmarks == 0) return std::nullopt;
     InitialViews initial{StartMap{view, frame.images[0]}, num_landmarks, {}};
     return begin_map(frame, view, initial);
   }
-  scene::TrackedView tracked = odometry_->track(view, map_, tracker_);
-  update_motion_model(frame, tracked);
+  const core::Rigid3 guessed =
+      map_.reference_from(state_.last_frame()->tracked.pose) * predicted_motion(view);
+  MaybeTracked tracked = odometry_->track(view, map_, guessed, tracker_);
+  if (tracked) update_motion_model(frame, *tracked);
   return tracked;
 }
 

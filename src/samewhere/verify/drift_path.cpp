@@ -20,7 +20,7 @@ constexpr double kLever_m = 10.0;
 struct Edge {
   std::size_t to = 0;
   bool is_loop = false;
-  core::Matrix6d information;
+  const core::Matrix6d* information = nullptr;  // the map's
   double cost = 0.0;  // additive along a path: variance of a position kLever_m away, m^2
 };
 
@@ -31,8 +31,8 @@ void add_edge(Graph& graph, core::KeyframeId a, core::KeyframeId b, bool is_loop
   const core::Matrix6d covariance = information.inverse();
   const double cost = covariance.topLeftCorner<3, 3>().trace() +
                       kLever_m * kLever_m * covariance.bottomRightCorner<3, 3>().trace();
-  graph[a.index()].push_back({b.index(), is_loop, information, cost});
-  graph[b.index()].push_back({a.index(), is_loop, information, cost});
+  graph[a.index()].push_back({b.index(), is_loop, &information, cost});
+  graph[b.index()].push_back({a.index(), is_loop, &information, cost});
 }
 
 Graph graph_of(const scene::MapVersion& map) {
@@ -106,7 +106,7 @@ UncertainPose composed(const scene::MapVersion& map, const std::vector<Step>& st
     const core::Rigid3 before_from_here =
         inverse(world_from_body(map, step.before)) * world_from_body(map, step.here);
     begin_from_end =
-        compose(UncertainPose{before_from_here, step.edge->information.inverse()}, begin_from_end);
+        compose(UncertainPose{before_from_here, step.edge->information->inverse()}, begin_from_end);
   }
   return begin_from_end;
 }

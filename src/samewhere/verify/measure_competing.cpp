@@ -132,7 +132,7 @@ bool may_compare(const scene::MapVersion& map, const scene::LoopEdge& claim,
                  const core::CompetingLoopEvidence& competing, const ScaleErrors& scale,
                  const Config& config) {
   return competing.mahalanobis_squared > config.max_competing_chi_square && !has_scale_drift(map) &&
-         measure_odometry(map, claim, scale, config).mahalanobis_squared <=
+         measure_odometry_alone(map, claim, scale, config).mahalanobis_squared <=
              config.max_odometry_chi_square;
 }
 
@@ -148,7 +148,7 @@ std::optional<core::CompetingLoopEvidence> measure_competing_loop(const scene::M
   since_loop.match = loop->query;
   since_loop.match_from_query = inverse(world_from_body(map, loop->query)) *
                                 world_from_body(map, claim.match) * claim.match_from_query;
-  const core::OdometryEvidence found = measure_odometry(map, since_loop, scale, config);
+  const core::OdometryEvidence found = measure_odometry_alone(map, since_loop, scale, config);
   core::CompetingLoopEvidence competing{.frame = map.at(loop->match).view.frame,
                                         .apart_m = found.correction_m,
                                         .apart_rad = found.correction_rad,

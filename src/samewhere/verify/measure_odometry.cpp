@@ -19,15 +19,25 @@ double least_certain_sigma_m(const core::Matrix6d& covariance) {
   return std::sqrt(of_position.eigenvalues().maxCoeff());
 }
 
-}  // namespace
-
-core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                                        const ScaleErrors& scale, const Config& config) {
+// Of the query's pose in the match, from what the map knows to what the loop measures.
+core::Vector6d correction_by(const scene::MapVersion& map, const scene::LoopEdge& claim) {
   const core::Rigid3 known =
       inverse(world_from_body(map, claim.match)) * world_from_body(map, claim.query);
-  const core::Vector6d correction = difference(known, claim.match_from_query);
-  const double distance_m = has_scale_drift(map) ? config.min_look_alike_distance_without_depth
-                                                 : config.min_look_alike_distance_m;
+  return difference(known, claim.match_from_query);
+}
+
+// Metres, or without depth median depths.
+double look_alike_distance(const scene::MapVersion& map, const Config& config) {
+  return has_scale_drift(map) ? config.min_look_alike_distance_without_depth
+                              : config.min_look_alike_distance_m;
+}
+
+}  // namespace
+
+core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
+                                              const scene::LoopEdge& claim,
+                                              const ScaleErrors& scale, const Config& config) {
+  const core::Vector6d correction = correction_by(map, claim);
   core::OdometryEvidence evidence;
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
@@ -37,15 +47,23 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
     const core::Matrix6d covariance = expected.covariance + loop_information(config).inverse();
     evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
     evidence.sigma_m = least_certain_sigma_m(covariance);
-    evidence.look_alike_gain = look_alike_gain(error, covariance, distance_m);
+    evidence.look_alike_gain = look_alike_gain(error, covariance, look_alike_distance(map, config));
   }
+  return evidence;
+}
+
+core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                                        const ScaleErrors& scale, const Config& config) {
+  core::OdometryEvidence evidence = measure_odometry_alone(map, claim, scale, config);
   if (evidence.mahalanobis_squared > config.max_odometry_chi_square || map.loops.empty() ||
       has_scale_drift(map))
     return evidence;
   if (const auto drift = covariance_with_loops(map, claim.match, claim.query, scale.bias)) {
+    const core::Vector6d correction = correction_by(map, claim);
     const core::Matrix6d covariance = *drift + loop_information(config).inverse();
     evidence.mahalanobis_squared_with_loops = correction.dot(covariance.llt().solve(correction));
-    evidence.look_alike_gain_with_loops = look_alike_gain(correction, covariance, distance_m);
+    evidence.look_alike_gain_with_loops =
+        look_alike_gain(correction, covariance, look_alike_distance(map, config));
     evidence.sigma_m = std::min(evidence.sigma_m.value_or(std::numeric_limits<double>::infinity()),
                                 least_certain_sigma_m(covariance));
   }

@@ -16,10 +16,14 @@ struct ScaleErrors {
 
 // Odometry gate: the correction of the query's pose by the loop `claim`, and its Mahalanobis
 // distance under the drift accumulated between both keyframes (their chain of odometry edges) and
-// the covariance of the loop. Where that passes the gate, also how much likelier the place is than
-// a look-alike place, by odometry and, with depth, by odometry and the loops closed so far. Without
+// the covariance of the loop; also how much likelier the place is than a look-alike place. Without
 // depth the total scale drift is that of the claim; it is spread evenly over the keyframes of the
 // chain before the comparison (docs/decisions/027).
+core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
+                                              const scene::LoopEdge& claim,
+                                              const ScaleErrors& scale, const Config& config);
+
+// The same; where it passes the gate, with depth, also by odometry and the loops closed so far.
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config);
 
