@@ -38,7 +38,8 @@ function today(words) {
   sub(/believed$/, "accepted", words)
   sub(/never lied to$/, "without it", words)
   sub(/^starts$/, "trials", words)
-  sub(/^right$/, "correct", words)
+  sub(/^(right|confirmed correct)$/, "correct", words)
+  sub(/^confirmed wrong$/, "wrong", words)
   sub(/^back in the map$/, "the place", words)
   sub(/^in a look-alike of half the map$/, "only its look-alike", words)
   return words
