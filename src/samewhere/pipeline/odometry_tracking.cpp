@@ -36,10 +36,9 @@ std::optional<track::Track> track_near(const features::View& view, const scene::
   return track;
 }
 
-// Without depth its lengths are no metres.
-std::optional<geometry::UncertainPose> metric_motion(const std::optional<track::Track>& track,
-                                                     const scene::MapVersion& map) {
-  if (!track || scene::is_without_depth(map)) return std::nullopt;
+// In metres without depth, too: odometry has triangulated the landmarks.
+std::optional<geometry::UncertainPose> motion_of(const std::optional<track::Track>& track) {
+  if (!track) return std::nullopt;
   return geometry::UncertainPose{track->pose.reference_from_frame,
                                  track->pose.information.inverse()};
 }
@@ -67,7 +66,7 @@ std::optional<scene::TrackedView> OdometryTracking::track(const features::View& 
   const auto seen =
       track_near(view, map.local_map(), moved.has_gap ? guessed : moved.before_from_after.a_from_b,
                  tracker, config_);
-  const auto images = metric_motion(seen, map.version());
+  const auto images = motion_of(seen);
   if (is_in_gap && !images) return std::nullopt;
   const geometry::UncertainPose motion =
       combine_with_images(moved, images, systematic_drift(config_.odometry));

@@ -60,7 +60,7 @@ report::Figure RunOdometry::figure() const {
   if (num_without_ > 0 && num_without_ < num_frames_) {
     spdlog::warn(
         "{}: {} of {} frames have no odometry (before, after or between rows more than "
-        "odometry.max_gap_s apart); in a new map they are tracked by images, with depth",
+        "odometry.max_gap_s apart); in a new map they are tracked by images",
         settings_.file, num_without_, num_frames_);
   }
   return report::figure("frames without odometry", "{}", num_without_);
