@@ -41,8 +41,8 @@ std::optional<Rejection> check_consistency(const Candidate& candidate, const Evi
                                apart_m, apart_rad * kDegrees));
 }
 
-int inliers_needed(const core::GeometryEvidence& geometry, const Config& config) {
-  return needs_sequence(geometry, config) ? config.min_inliers_in_sequence : config.min_inliers;
+int inliers_needed(const Config& config) {
+  return needs_sequences(config) ? config.min_inliers_in_sequence : config.min_inliers;
 }
 
 std::optional<Rejection> check_geometry(const Candidate& candidate, const Evidence& evidence,
@@ -53,8 +53,8 @@ std::optional<Rejection> check_geometry(const Candidate& candidate, const Eviden
         candidate, evidence, Refusal::kMatches,
         fmt::format("only {} feature matches, {} needed", g.num_matches, config.min_matches));
   }
-  const bool is_by_itself = !needs_sequence(g, config);
-  const int min_inliers = inliers_needed(g, config);
+  const bool is_by_itself = !needs_sequences(config);
+  const int min_inliers = inliers_needed(config);
   if (g.num_inliers < min_inliers) {
     return rejection(
         candidate, evidence, Refusal::kInliers,
@@ -204,7 +204,7 @@ std::optional<core::Verdict> check_other_views(const Candidate& candidate, const
   auto undecided = check_competing_loop(candidate, evidence, config);
   if (!undecided) undecided = check_loops_of_map(candidate, evidence, config);
   if (!undecided) undecided = check_competing_place(candidate, evidence, config);
-  if (!undecided && needs_sequence(*evidence.geometry, config))
+  if (!undecided && needs_sequences(config))
     undecided = check_sequence(candidate, evidence, config);
   if (!undecided) undecided = check_evidence(candidate, evidence, config);
   return undecided;
@@ -234,12 +234,8 @@ void add_edge(core::LoopClosure& loop, const Config& config) {
 
 }  // namespace
 
-bool may_need_sequences(const Config& config) {
+bool needs_sequences(const Config& config) {
   return config.require_geometry && !config.require_pose && config.min_views > 1;
-}
-
-bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config) {
-  return may_need_sequences(config) && !geometry.match_from_query;
 }
 
 bool is_pending(const core::Verdict& verdict) {
@@ -306,7 +302,7 @@ double rank(const Evidence& evidence, const Config& config) {
   if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
   const core::GeometryEvidence geometry = evidence.geometry.value_or(core::GeometryEvidence{});
   const double ties = kTie * (geometry.num_inliers + below_1(evidence.similarity));
-  if (geometry.num_inliers < inliers_needed(geometry, config)) return ties;
+  if (geometry.num_inliers < inliers_needed(config)) return ties;
   return ties + geometry.num_inliers * geometry.overlap_ratio * geometry.overlap_ratio;
 }
 

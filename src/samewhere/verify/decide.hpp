@@ -22,10 +22,8 @@ std::optional<core::Rejection> refuse_early(const core::Candidate& candidate,
                                             const core::Evidence& evidence, const History& history,
                                             const Config& config);
 
-// Whether candidates without a relative pose are confirmed by the views around them, and whether
-// this one is.
-bool may_need_sequences(const Config& config);
-bool needs_sequence(const core::GeometryEvidence& geometry, const Config& config);
+// Whether candidates are confirmed by the views around them: where no relative pose is required.
+bool needs_sequences(const Config& config);
 // Ambiguous until the views that follow have been seen.
 bool is_pending(const core::Verdict& verdict);
 // Whether the geometric checks pass.

@@ -251,7 +251,7 @@ GeometryEvidence measure_geometry(const core::Candidate& candidate, const View& 
       query.rig->is_calibrated() && match.rig->is_calibrated() && has_depth(match);
   GeometryEvidence by_depth;
   if (can_have_pose) by_depth = measure_both_ways(query, match, matches, settings, random);
-  if (can_have_pose && !may_need_sequences(settings.verify)) return by_depth;
+  if (can_have_pose && !needs_sequences(settings.verify)) return by_depth;
   return with_pose_of(by_depth, measure_epipolar(query, match, matches, settings.verify, random),
                       settings.verify);
 }

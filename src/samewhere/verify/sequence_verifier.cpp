@@ -11,24 +11,24 @@ SequenceVerifier::SequenceVerifier(const MeasureSettings& settings, std::uint64_
       pending_(settings.verify) {}
 
 void SequenceVerifier::add(const features::View& view, const core::Descriptor& descriptor) {
-  if (may_need_sequences(config_)) numbered_.add(view, descriptor);
+  if (needs_sequences(config_)) numbered_.add(view, descriptor);
 }
 
 void SequenceVerifier::number(const core::Candidate& candidate, core::Evidence& evidence) const {
-  if (!evidence.geometry || !needs_sequence(*evidence.geometry, config_)) return;
+  if (!evidence.geometry || !needs_sequences(config_)) return;
   evidence.sequence = {.query_view = numbered_.number_of(candidate.query),
                        .match_view = numbered_.number_of(candidate.match)};
 }
 
 void SequenceVerifier::record(const core::LedgerRow& row) {
-  if (!may_need_sequences(config_)) return;
+  if (!needs_sequences(config_)) return;
   recorded_.insert({row.candidate.query, row.candidate.match});
   if (is_pending(row.verdict)) pending_.add(row.candidate, core::evidence_of(row.verdict));
 }
 
 std::vector<core::Candidate> SequenceVerifier::predict(const core::Descriptor& descriptor) {
   std::vector<core::Candidate> candidates;
-  if (!may_need_sequences(config_)) return candidates;
+  if (!needs_sequences(config_)) return candidates;
   const int now = numbered_.number_of(descriptor.frame);
   for (const ViewPair& views : pending_.predict(now)) {
     const auto* match = numbered_.at(views.match);
@@ -45,7 +45,7 @@ std::vector<core::Candidate> SequenceVerifier::predict(const core::Descriptor& d
 }
 
 std::vector<core::LedgerRow> SequenceVerifier::settle(core::FrameId frame) {
-  if (!may_need_sequences(config_)) return {};
+  if (!needs_sequences(config_)) return {};
   return pending_.settle(numbered_.number_of(frame));
 }
 
