@@ -15,16 +15,9 @@ using input::OdometryRows;
 
 // The axis of the world about which the body turns most. A body that moves upright turns about the
 // vertical. Nothing if it turns little, or about several.
-std::optional<Eigen::Vector3d> axis_of_turns(const OdometryRows& rows) {
+std::optional<Eigen::Vector3d> axis_of_turns(const Eigen::Matrix3d& turns) {
   constexpr double kMinTurned_rad = 1.0;
   constexpr double kMinRatio = 3.0;
-  Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const Eigen::Vector3d turn = rows[i - 1].world_from_body.rotation *
-                                 core::log_so3(rows[i - 1].world_from_body.rotation.conjugate() *
-                                               rows[i].world_from_body.rotation);
-    if (turn.norm() > 0.0) turns += turn * turn.transpose() / turn.norm();
-  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(turns);
   const Eigen::Vector3d& turned_rad = solver.eigenvalues();  // ascending
   if (turned_rad(2) < kMinTurned_rad || turned_rad(2) < kMinRatio * turned_rad(1))
@@ -48,8 +41,25 @@ OdometryPath::OdometryPath(const OdometryConfig& config, OdometryRows rows)
     : config_(config), rows_(std::move(rows)), rates_(drift_rates(config)) {
   core::require(!rows_.empty(), "odometry has a row");
   uses_covariances_ = config.sensor == OdometrySensor::kFile;
-  core::require(!uses_covariances_ || has_covariances(rows_), "the file has covariances");
-  up_in_world_ = axis_of_turns(rows_);
+  core::require(!uses_covariances_ || rows_.size() == 1 || has_covariances(rows_),
+                "the file has covariances");
+  for (std::size_t i = 1; i < rows_.size(); ++i) add_turn(rows_[i - 1], rows_[i]);
+  up_in_world_ = axis_of_turns(turns_);
+}
+
+void OdometryPath::add(const OdometryRow& row) {
+  core::require(row.stamp_s > rows_.back().stamp_s, "rows of odometry ascend");
+  core::require(!uses_covariances_ || row.covariance.has_value(), "the row has a covariance");
+  add_turn(rows_.back(), row);
+  up_in_world_ = axis_of_turns(turns_);
+  rows_.push_back(row);
+}
+
+void OdometryPath::add_turn(const OdometryRow& before, const OdometryRow& row) {
+  const Eigen::Vector3d turn =
+      before.world_from_body.rotation *
+      core::log_so3(before.world_from_body.rotation.conjugate() * row.world_from_body.rotation);
+  if (turn.norm() > 0.0) turns_ += turn * turn.transpose() / turn.norm();
 }
 
 core::Rigid3 OdometryPath::interpolated(double stamp_s) const {

@@ -19,6 +19,10 @@ class OdometryPath {
   // Throws ContractError without a row, and for sensor `file` without covariances.
   OdometryPath(const OdometryConfig& config, input::OdometryRows rows);
 
+  // The next row of odometry that comes with the frames, later than the last. For sensor `file` it
+  // has a covariance. Then the constructor takes the first row alone.
+  void add(const input::OdometryRow& row);
+
   double first_s() const { return rows_.front().stamp_s; }
   double last_s() const { return rows_.back().stamp_s; }
 
@@ -34,6 +38,7 @@ class OdometryPath {
   core::Rigid3 interpolated(double stamp_s) const;
   OdometryStep step(double from_s, double to_s) const;
   core::Matrix6d covariance_by_rows(double from_s, double to_s) const;
+  void add_turn(const input::OdometryRow& before, const input::OdometryRow& row);
 
   OdometryConfig config_;
   input::OdometryRows rows_;
@@ -41,6 +46,7 @@ class OdometryPath {
   DriftRates rates_;
   // Axis of the file's world that the body turns about; none: no single one.
   std::optional<Eigen::Vector3d> up_in_world_;
+  Eigen::Matrix3d turns_ = Eigen::Matrix3d::Zero();  // about each axis, radians
 };
 
 }  // namespace samewhere::pipeline
