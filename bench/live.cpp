@@ -1,0 +1,151 @@
+// What the library's live interface costs: track() frame by frame, with and without a consumer that
+// reads a snapshot for every frame, waiting for late stages and never; and a snapshot of large
+// maps.
+//   live RECORDING [--set key=value]...      live --snapshots
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <samewhere/core/program.hpp>
+#include <samewhere/core/terminal.hpp>
+#include <samewhere/core/timing.hpp>
+#include <samewhere/library/map_content.hpp>
+#include <samewhere/recording.hpp>
+#include <samewhere/slam.hpp>
+
+namespace samewhere::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since_ms(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Consumer {
+  bool reads_snapshots = false;
+  bool never_waits = false;
+  double period_s = 0.0;  // of a camera; 0: the next frame comes at once
+};
+
+// As a camera would: a frame comes when it is due, or when the one before is done.
+void track(const std::string& source, const std::vector<std::string>& settings,
+           const Consumer& consumer) {
+  Recording recording(source, settings);
+  Slam slam(recording.calibration(), {.settings = settings, .never_wait = consumer.never_waits});
+  std::vector<double> track_ms;
+  std::vector<double> snapshot_ms;
+  std::size_t num_points = 0;
+  int num_lost = 0;
+  double largest_step_m = 0.0;
+  double largest_map_step_m = 0.0;
+  Tracked before;
+  Clock::time_point due = Clock::now();
+  while (const auto frame = recording.next()) {
+    const std::chrono::duration<double> period(consumer.period_s);
+    due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), Clock::now());
+    while (Clock::now() < due) {
+    }
+    auto start = Clock::now();
+    const Tracked tracked = slam.track(*frame);
+    track_ms.push_back(since_ms(start));
+    num_lost += tracked.has_pose() ? 0 : 1;
+    if (tracked.has_pose() && before.has_pose()) {
+      const Pose step = before.odom_from_camera.inverse() * tracked.odom_from_camera;
+      const Pose map_step = before.map_from_camera().inverse() * tracked.map_from_camera();
+      largest_step_m = std::max(largest_step_m, step.translation().norm());
+      largest_map_step_m = std::max(largest_map_step_m, map_step.translation().norm());
+    }
+    before = tracked;
+    if (!consumer.reads_snapshots) continue;
+    start = Clock::now();
+    const auto map = slam.map();
+    num_points += map->keyframes().size() + map->landmarks().size();
+    snapshot_ms.push_back(since_ms(start));
+  }
+  slam.finish();
+  const core::TimingSummary times = core::summarize(track_ms);
+  core::print(
+      "{} {}: track() median {:.2f} p99 {:.2f} max {:.2f} ms, {} frames, {} without pose, {} "
+      "loops, "
+      "largest step of odom {:.3f} m, of map {:.3f} m",
+      consumer.never_waits ? "never_wait" : "waits",
+      consumer.period_s > 0.0 ? "at the camera's rate" : "at once", times.median_ms, times.p99_ms,
+      *std::max_element(track_ms.begin(), track_ms.end()), track_ms.size(), num_lost,
+      slam.map()->loops().size(), largest_step_m, largest_map_step_m);
+  if (consumer.reads_snapshots) {
+    core::print("; snapshot read for every frame: median {:.2f} ms of {} points in all",
+                core::summarize(snapshot_ms).median_ms, num_points);
+  }
+  core::print("\n");
+}
+
+// A map of so many keyframes, each with landmarks of its own.
+scene::MapVersion map_of(std::size_t num_keyframes) {
+  constexpr std::size_t kLandmarks = 60;
+  scene::MapVersion map;
+  auto rig = std::make_shared<core::Rig>();
+  rig->cameras.emplace_back(core::PinholeRadtan{});
+  rig->body_from_camera.emplace_back();
+  for (std::size_t i = 0; i < num_keyframes; ++i) {
+    scene::Keyframe keyframe{.id = core::KeyframeId(i)};
+    keyframe.view.frame = core::FrameId(10 * i);
+    keyframe.view.rig = rig;
+    keyframe.slots.resize(kLandmarks);
+    scene::Edit edit{.keyframes = {keyframe}};
+    for (std::size_t k = 0; k < kLandmarks; ++k) {
+      scene::Landmark landmark{.id = core::LandmarkId(map.landmarks.size() + k),
+                               .anchor = keyframe.id};
+      landmark.observations.push_back({keyframe.id, static_cast<int>(k)});
+      edit.landmarks.push_back(landmark);
+    }
+    map = scene::apply(std::move(map), edit);
+  }
+  return map;
+}
+
+void measure_snapshots() {
+  constexpr int kRepeats = 50;
+  for (const std::size_t num_keyframes : {100, 1000, 4000}) {
+    const scene::MapVersion map = map_of(num_keyframes);
+    std::vector<double> take_ms;
+    std::vector<double> read_ms;
+    for (int i = 0; i < kRepeats; ++i) {
+      auto start = Clock::now();
+      const auto taken = library::snapshot(map, true);
+      take_ms.push_back(since_ms(start));
+      start = Clock::now();
+      const std::size_t num_read = taken->keyframes().size() + taken->landmarks().size();
+      if (num_read > 0) read_ms.push_back(since_ms(start));
+    }
+    core::print(
+        "{} keyframes, {} landmarks: taken in {:.3f} ms, all poses and landmarks in {:.2f} ms\n",
+        num_keyframes, map.landmarks.size(), core::summarize(take_ms).median_ms,
+        core::summarize(read_ms).median_ms);
+  }
+}
+
+int measure(const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0] == "--snapshots") {
+    measure_snapshots();
+    return core::kDone;
+  }
+  const std::vector<std::string> settings(arguments.begin() + 1, arguments.end());
+  constexpr double kCamera_s = 1.0 / 15.0;
+  for (const bool reads_snapshots : {false, true})
+    track(arguments[0], settings, {.reads_snapshots = reads_snapshots});
+  for (const bool never_waits : {false, true})
+    track(arguments[0], settings, {.never_waits = never_waits, .period_s = kCamera_s});
+  return core::kDone;
+}
+
+}  // namespace
+}  // namespace samewhere::bench
+
+int main(int argc, char** argv) {
+  return samewhere::core::run_program("live", [&] {
+    return samewhere::bench::measure({argv + 1, argv + argc});
+  });
+}
