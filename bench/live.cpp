@@ -1,18 +1,29 @@
 // What the library's live interface costs: track() frame by frame, with and without a consumer that
 // reads a snapshot for every frame, waiting for late stages and never; and a snapshot of large
 // maps.
-//   live RECORDING [--set key=value]...      live --snapshots
+//   live RECORDING [key=value]...          live --snapshots
+// And whether it gives the bits of `samewhere run`, and LoopCloser the verdicts of a run with an
+// odometry file, which has a row for each frame:
+//   live --equal RECORDING [key=value]...  live --closer RECORDING ODOMETRY SENSOR
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/core/timing.hpp>
+#include <samewhere/input/odometry_file.hpp>
+#include <samewhere/library/convert.hpp>
 #include <samewhere/library/map_content.hpp>
+#include <samewhere/loop_closer.hpp>
 #include <samewhere/recording.hpp>
+#include <samewhere/run/open_source.hpp>
+#include <samewhere/run/run.hpp>
 #include <samewhere/slam.hpp>
 
 namespace samewhere::bench {
@@ -127,9 +138,99 @@ void measure_snapshots() {
   }
 }
 
+using Verdicts = std::map<std::uint64_t, std::string>;
+
+void add(Verdicts& verdicts, const LoopVerdict& verdict) {
+  verdicts[verdict.candidate] = fmt::format("{} {} {} {}", verdict.query.index, verdict.match.index,
+                                            static_cast<int>(verdict.decision), verdict.check);
+}
+
+Verdicts verdicts_of(const core::Ledger& ledger) {
+  Verdicts verdicts;
+  for (const core::LedgerRow& row : ledger) add(verdicts, library::verdict_of(row));
+  return verdicts;
+}
+
+std::size_t num_different(const Verdicts& a, const Verdicts& b) {
+  std::size_t count = 0;
+  for (const auto& [candidate, text] : a)
+    count += b.contains(candidate) && b.at(candidate) == text ? 0 : 1;
+  for (const auto& [candidate, text] : b) count += a.contains(candidate) ? 0 : 1;
+  return count;
+}
+
+void compare_with_run(const std::string& source, const std::vector<std::string>& settings) {
+  pipeline::Config config = library::config_of("default", settings, std::nullopt);
+  config.source = source;
+  const run::RunOutcome run = run::run_slam(run::open_source(config), config, {}, true);
+  for (const bool threads : {true, false}) {
+    Recording recording(source, settings);
+    Slam slam(recording.calibration(), {.settings = settings, .threads = threads});
+    Verdicts verdicts;
+    const auto take = [&] {
+      for (const Event& event : slam.take_events())
+        if (const auto* verdict = std::get_if<LoopVerdict>(&event.what)) add(verdicts, *verdict);
+    };
+    std::vector<Tracked> tracked;
+    while (const auto frame = recording.next()) {
+      tracked.push_back(slam.track(*frame));
+      take();
+    }
+    slam.finish();
+    take();
+    const auto trajectory = slam.trajectory();
+    std::size_t num_poses = 0;
+    std::size_t num_equal = 0;
+    for (const report::FrameRecord& frame : run.record.frames) {
+      if (!is_confirmed(frame.pose)) continue;
+      const Pose expected = library::pose_of(*frame.world_from_camera);
+      num_equal += num_poses < trajectory.size() &&
+                   trajectory[num_poses].map_from_camera.matrix() == expected.matrix();
+      ++num_poses;
+    }
+    core::print(
+        "{} threads {}: {} poses of run, {} of live, {} equal to the bit; {} verdicts, {} "
+        "different\n",
+        source, threads, num_poses, trajectory.size(), num_equal, verdicts.size(),
+        num_different(verdicts, verdicts_of(run.record.ledger)));
+  }
+}
+
+void compare_closer(const std::string& source, const std::string& odometry,
+                    const std::string& sensor) {
+  const std::vector<std::string> settings = {"odometry.file=" + odometry,
+                                             "odometry.sensor=" + sensor};
+  pipeline::Config config = library::config_of("default", settings, std::nullopt);
+  config.source = source;
+  const run::RunOutcome run = run::run_slam(run::open_source(config), config, {}, true);
+  const auto kind = static_cast<OdometrySensor>(config.odometry.sensor);
+  Recording recording(source);
+  LoopCloser closer(recording.calibration(), {.sensor = kind, .are_keyframes = false});
+  Verdicts verdicts;
+  for (const input::OdometryRow& row : input::read_odometry(odometry)) {
+    const auto frame = recording.next();
+    if (!frame) break;
+    for (const LoopVerdict& verdict :
+         closer.add({*frame, library::pose_of(row.world_from_body), row.covariance}))
+      add(verdicts, verdict);
+  }
+  for (const LoopVerdict& verdict : closer.finish()) add(verdicts, verdict);
+  core::print("{} {}: {} verdicts, {} different; {} loops\n", source, sensor, verdicts.size(),
+              num_different(verdicts, verdicts_of(run.record.ledger)),
+              closer.map()->loops().size());
+}
+
 int measure(const std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments[0] == "--snapshots") {
     measure_snapshots();
+    return core::kDone;
+  }
+  if (arguments[0] == "--equal" && arguments.size() > 1) {
+    compare_with_run(arguments[1], {arguments.begin() + 2, arguments.end()});
+    return core::kDone;
+  }
+  if (arguments[0] == "--closer" && arguments.size() > 3) {
+    compare_closer(arguments[1], arguments[2], arguments[3]);
     return core::kDone;
   }
   const std::vector<std::string> settings(arguments.begin() + 1, arguments.end());

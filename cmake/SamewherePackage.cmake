@@ -14,6 +14,8 @@ target_link_libraries(samewhere_shared INTERFACE Eigen3::Eigen)
 target_link_options(samewhere_shared PRIVATE -Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/samewhere.map -Wl,--no-undefined)
 target_include_directories(samewhere_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(samewhere_shared INTERFACE cxx_std_20)
+# -march options of a user would change the layout of poses
+target_compile_definitions(samewhere_shared INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 # before version 1 any minor version may change the interface
 set_target_properties(samewhere_shared PROPERTIES
   OUTPUT_NAME samewhere EXPORT_NAME samewhere VERSION ${PROJECT_VERSION}
