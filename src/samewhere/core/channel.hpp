@@ -61,6 +61,12 @@ class Channel {
     return message;
   }
 
+  // Whether receive() would return at once. For what is live: a run that asks is not repeatable.
+  bool is_ready() const {
+    const std::lock_guard lock(mutex_);
+    return is_closed_ || !messages_.empty();
+  }
+
   void close() {
     const std::lock_guard lock(mutex_);
     is_closed_ = true;
@@ -69,10 +75,41 @@ class Channel {
 
  private:
   const std::size_t capacity_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<T> messages_;
   bool is_closed_ = false;
+};
+
+// A value that several threads read and write, one at a time.
+template <class T>
+class Guarded {
+ public:
+  explicit Guarded(T value = {}) : value_(std::move(value)) {}
+
+  T get() const {
+    const std::lock_guard lock(mutex_);
+    return value_;
+  }
+  void set(T value) {
+    const std::lock_guard lock(mutex_);
+    std::swap(value_, value);  // the old one is destroyed behind the lock
+  }
+  // The value before.
+  T exchange(T value) {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(value_, std::move(value));
+  }
+  // What `work` returns for the value, which no other thread sees meanwhile.
+  template <class Work>
+  auto with(const Work& work) {
+    const std::lock_guard lock(mutex_);
+    return work(value_);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  T value_;
 };
 
 }  // namespace samewhere::core

@@ -27,6 +27,8 @@ class Link {
   virtual void send(Message message) = 0;
   // The next answer; waits for it. Throws what the stage threw.
   virtual Answer receive() = 0;
+  // Whether receive() would not wait. For what is live: a run that asks is not repeatable.
+  virtual bool is_ready() const = 0;
   // Ends the stage when it has done all that was sent. Throws what the stage threw.
   virtual void finish() = 0;
   // Processor time of the stage outside of the caller's thread. After finish().
@@ -50,6 +52,7 @@ class DirectLink : public Link<Message, Answer> {
     answers_.pop_front();
     return answer;
   }
+  bool is_ready() const override { return !answers_.empty(); }
   void finish() override {}
   double processor_ms() const override { return 0.0; }
 
@@ -87,6 +90,7 @@ class ThreadLink : public Link<Message, Answer> {
     if (!answer) fail();
     return std::move(*answer);
   }
+  bool is_ready() const override { return answers_.is_ready(); }
   void finish() override {
     messages_.close();
     worker_.join();

@@ -43,7 +43,7 @@ void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
   give_up_map();
   map_.has_metric_odometry = config_.odometry.is_used();
   apply(map::start_map(map_, message.view, core::Rigid3{}));
-  reply({.map = map_, .places = {}});
+  reply(answer());
   ask_for_loops(message.image);
   keep_map();
 }
@@ -53,7 +53,7 @@ void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& re
   apply(map::start_map(map_, message.views));
   connect_newest();
   refine_newest();
-  reply({.map = map_, .places = {}});
+  reply(answer());
   ask_for_loops(message.image);
   keep_map();
 }
@@ -68,7 +68,7 @@ void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) 
                                       : message.tracked));
   }
   connect_newest();
-  reply({.map = map_, .places = {}});
+  reply(answer());
   refine_newest();
   ask_for_loops(message.image);
   full_bundles_.begin(map_);
@@ -82,7 +82,7 @@ void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
   loops_.send(message);
   const LoopAnswer answer = loops_.receive();
   note(answer);
-  reply({.map = map_, .places = answer.places});
+  reply(this->answer(answer.places));
 }
 
 void Mapping::take(const SaveFrames& message, const MappingLink::Reply& /*reply*/) {
@@ -148,6 +148,7 @@ void Mapping::note(const LoopAnswer& answer) {
   if (answer.descriptor) news_.descriptors.push_back(*answer.descriptor);
   if (answer.thumbnail) news_.thumbnails.push_back(*answer.thumbnail);
   news_.rows.insert(news_.rows.end(), answer.rows.begin(), answer.rows.end());
+  unsent_rows_.insert(unsent_rows_.end(), answer.rows.begin(), answer.rows.end());
   for (const auto& row : answer.rows)
     if (core::is_loop(row.verdict)) accepted_.insert_or_assign(row.candidate.id, row);
 }
@@ -211,7 +212,14 @@ void Mapping::accept_again(const scene::LoopEdge& loop) {
 
 void Mapping::add_row(const core::LedgerRow& row) {
   news_.rows.push_back(row);
+  unsent_rows_.push_back(row);
   later_verdicts_.push_back(row);
+}
+
+MapAnswer Mapping::answer(std::vector<Place> places) {
+  return {.map = map_,
+          .places = std::move(places),
+          .rows = std::exchange(unsent_rows_, core::Ledger{})};
 }
 
 void Mapping::add_frames(const std::vector<core::FramePose>& frames) {

@@ -30,6 +30,8 @@ class Mapping {
   const scene::MapVersion& map() const { return map_; }
   // Later verdicts of the pose graph on accepted loops, in the order of time.
   const core::Ledger& later_verdicts() const { return later_verdicts_; }
+  // Rows that came after the last answer.
+  const core::Ledger& unsent_rows() const { return unsent_rows_; }
   const core::Timings& timings() const { return timings_; }
 
  private:
@@ -60,6 +62,7 @@ class Mapping {
   void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);
   void accept_again(const scene::LoopEdge& loop);
   void add_row(const core::LedgerRow& row);
+  MapAnswer answer(std::vector<Place> places = {});
 
   void add_frames(const std::vector<core::FramePose>& frames);
   void keep_map();
@@ -79,6 +82,7 @@ class Mapping {
   MapNews news_;                    // since the map was kept
   std::map<core::CandidateId, core::LedgerRow> accepted_;  // by the loop verifier, in this session
   core::Ledger later_verdicts_;
+  core::Ledger unsent_rows_;
 };
 
 }  // namespace samewhere::pipeline

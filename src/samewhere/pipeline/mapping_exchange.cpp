@@ -34,7 +34,7 @@ void MappingExchange::insert(scene::TrackedView tracked, const cv::Mat& image,
 }
 
 bool MappingExchange::is_due(std::size_t num_frames) const {
-  return in_progress_ && in_progress_->due_at_frame <= num_frames;
+  return in_progress_ && in_progress_->due_at_frame <= num_frames && may_receive();
 }
 
 MappingExchange::VisibleKeyframe MappingExchange::receive() {
@@ -57,7 +57,7 @@ void MappingExchange::ask_places(const features::View& view, const cv::Mat& imag
 }
 
 bool MappingExchange::are_places_due(std::size_t num_frames) const {
-  return places_due_at_frame_ && *places_due_at_frame_ <= num_frames;
+  return places_due_at_frame_ && *places_due_at_frame_ <= num_frames && may_receive();
 }
 
 MapAnswer MappingExchange::receive_places() {
@@ -81,7 +81,9 @@ void MappingExchange::finish(std::vector<core::FramePose> frames) {
 
 MapAnswer MappingExchange::wait() {
   const core::ScopedTimer timer(timings_, "wait for mapping");
-  return link_.receive();
+  MapAnswer answer = link_.receive();
+  rows_.insert(rows_.end(), answer.rows.begin(), answer.rows.end());
+  return answer;
 }
 
 }  // namespace samewhere::pipeline

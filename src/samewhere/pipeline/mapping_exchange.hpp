@@ -20,12 +20,19 @@ class MappingExchange {
   MappingExchange(const MappingExchange&) = delete;
   MappingExchange& operator=(const MappingExchange&) = delete;
 
+  // Before the first message: answers are received when they are there, not when they are due, so
+  // that only initialize() waits. The stages have threads; the results are not repeatable.
+  void never_wait() { never_waits_ = true; }
+
   // The map that begins with a StartMap or StartMapByMotion; an earlier one is discarded. Waits.
   scene::MapVersion initialize(ToMapping start);
   // Becomes next_keyframe(); its frame is the last one of `frames`.
   void insert(scene::TrackedView tracked, const cv::Mat& image,
               std::vector<core::FramePose> frames);
   bool is_keyframe_in_progress() const { return in_progress_.has_value(); }
+  // Whether tracking may receive the keyframe in progress before it is due, and insert one.
+  bool may_receive() const { return !never_waits_ || link_.is_ready(); }
+  bool may_insert() const { return !in_progress_ && (!places_due_at_frame_ || may_receive()); }
   bool is_due(std::size_t num_frames) const;
   struct VisibleKeyframe {
     core::KeyframeId id;
@@ -40,6 +47,8 @@ class MappingExchange {
   void ask_places(const features::View& view, const cv::Mat& image);
   bool are_places_asked() const { return places_due_at_frame_.has_value(); }
   bool are_places_due(std::size_t num_frames) const;
+  // Whether places are asked for and received later, of every view.
+  bool waits_for_places() const { return !never_waits_; }
   MapAnswer receive_places();  // waits
   // Frames without a keyframe.
   void save(std::vector<core::FramePose> frames);
@@ -52,6 +61,10 @@ class MappingExchange {
   // All that were sent, or known before; those of the current map.
   std::uint64_t num_keyframes() const { return num_keyframes_; }
   std::uint64_t num_keyframes_of_map() const { return num_keyframes_ - num_discarded_; }
+
+  // Verdicts on loop candidates that came with the answers, since forget_rows().
+  const core::Ledger& rows() const { return rows_; }
+  void forget_rows() { rows_.clear(); }
 
   const core::Timings& timings() const { return timings_; }
 
@@ -66,6 +79,8 @@ class MappingExchange {
 
   MappingLink& link_;
   std::size_t visible_after_frames_ = 0;
+  bool never_waits_ = false;
+  core::Ledger rows_;
   core::Timings timings_;
   std::uint64_t num_keyframes_ = 0;
   std::uint64_t num_discarded_ = 0;

@@ -75,6 +75,7 @@ struct Place {
 struct MapAnswer {
   scene::MapVersion map;
   std::vector<Place> places;  // to FindPlace
+  core::Ledger rows = {};     // that mapping has received or made since its last answer
 };
 
 // --- Mapping to loop closing.

@@ -15,16 +15,9 @@ using input::OdometryRows;
 
 // The axis of the world about which the body turns most. A body that moves upright turns about the
 // vertical. Nothing if it turns little, or about several.
-std::optional<Eigen::Vector3d> axis_of_turns(const OdometryRows& rows) {
+std::optional<Eigen::Vector3d> axis_of_turns(const Eigen::Matrix3d& turns) {
   constexpr double kMinTurned_rad = 1.0;
   constexpr double kMinRatio = 3.0;
-  Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const Eigen::Vector3d turn = rows[i - 1].world_from_body.rotation *
-                                 core::log_so3(rows[i - 1].world_from_body.rotation.conjugate() *
-                                               rows[i].world_from_body.rotation);
-    if (turn.norm() > 0.0) turns += turn * turn.transpose() / turn.norm();
-  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(turns);
   const Eigen::Vector3d& turned_rad = solver.eigenvalues();  // ascending
   if (turned_rad(2) < kMinTurned_rad || turned_rad(2) < kMinRatio * turned_rad(1))
@@ -32,37 +25,17 @@ std::optional<Eigen::Vector3d> axis_of_turns(const OdometryRows& rows) {
   return solver.eigenvectors().col(2);
 }
 
-double extent_m(const OdometryRows& rows, const Eigen::Vector3d& direction) {
-  double least = 0.0;
-  double most = 0.0;
-  for (const OdometryRow& row : rows) {
-    const double along =
-        direction.dot(row.world_from_body.translation - rows.front().world_from_body.translation);
-    least = std::min(least, along);
-    most = std::max(most, along);
-  }
-  return most - least;
-}
-
-// Nothing if the rows leave every plane, or lie on a line and turn about no axis.
-std::optional<Eigen::Vector3d> normal_of(const OdometryRows& rows,
+// Nothing if the positions leave every plane, or lie on a line and turn about no axis.
+std::optional<Eigen::Vector3d> normal_of(const Eigen::Matrix3d& positions,
                                          const std::optional<Eigen::Vector3d>& up) {
-  constexpr double kMaxThickness_m = 2e-3;
-  constexpr double kMinWidth_m = 0.2;
-  if (up && extent_m(rows, *up) <= kMaxThickness_m) return up;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const OdometryRow& row : rows) mean += row.world_from_body.translation;
-  mean /= static_cast<double>(rows.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const OdometryRow& row : rows) {
-    const Eigen::Vector3d from_mean = row.world_from_body.translation - mean;
-    scatter += from_mean * from_mean.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  const Eigen::Vector3d normal = solver.eigenvectors().col(0);  // ascending
-  const bool is_plane = extent_m(rows, normal) <= kMaxThickness_m &&
-                        extent_m(rows, solver.eigenvectors().col(1)) >= kMinWidth_m;
-  return is_plane ? std::optional(normal) : std::nullopt;
+  constexpr double kMaxThickness_m = 1e-3;  // RMS, as the width
+  constexpr double kMinWidth_m = 0.05;
+  if (up && up->dot(positions * *up) <= kMaxThickness_m * kMaxThickness_m) return up;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(positions);
+  const Eigen::Vector3d& variances = solver.eigenvalues();  // ascending
+  if (variances(0) > kMaxThickness_m * kMaxThickness_m || variances(1) < kMinWidth_m * kMinWidth_m)
+    return std::nullopt;
+  return solver.eigenvectors().col(0);
 }
 
 // The first row after the moment.
@@ -81,9 +54,46 @@ OdometryPath::OdometryPath(const OdometryConfig& config, OdometryRows rows)
     : config_(config), rows_(std::move(rows)), rates_(drift_rates(config)) {
   core::require(!rows_.empty(), "odometry has a row");
   uses_covariances_ = config.sensor == OdometrySensor::kFile;
-  core::require(!uses_covariances_ || has_covariances(rows_), "the file has covariances");
-  up_in_world_ = axis_of_turns(rows_);
-  normal_in_world_ = normal_of(rows_, up_in_world_);
+  core::require(!uses_covariances_ || rows_.size() == 1 || has_covariances(rows_),
+                "the file has covariances");
+  for (std::size_t i = 1; i < rows_.size(); ++i) add_turn(rows_[i - 1], rows_[i]);
+  for (const OdometryRow& row : rows_) add_position(row);
+  find_axes();
+}
+
+void OdometryPath::add(const OdometryRow& row) {
+  core::require(row.stamp_s > rows_.back().stamp_s, "rows of odometry ascend");
+  core::require(!uses_covariances_ || row.covariance.has_value(), "the row has a covariance");
+  add_turn(rows_.back(), row);
+  add_position(row);
+  find_axes();
+  rows_.push_back(row);
+}
+
+void OdometryPath::add_position(const OdometryRow& row) {
+  positions_.add(row.world_from_body.translation - rows_.front().world_from_body.translation);
+}
+
+void OdometryPath::find_axes() {
+  up_in_world_ = axis_of_turns(turns_);
+  normal_in_world_ = normal_of(positions_.covariance(), up_in_world_);
+}
+
+void OdometryPath::Positions::add(const Eigen::Vector3d& position) {
+  ++count;
+  sum += position;
+  squares += position * position.transpose();
+}
+
+Eigen::Matrix3d OdometryPath::Positions::covariance() const {
+  return squares / count - sum * sum.transpose() / (count * count);
+}
+
+void OdometryPath::add_turn(const OdometryRow& before, const OdometryRow& row) {
+  const Eigen::Vector3d turn =
+      before.world_from_body.rotation *
+      core::log_so3(before.world_from_body.rotation.conjugate() * row.world_from_body.rotation);
+  if (turn.norm() > 0.0) turns_ += turn * turn.transpose() / turn.norm();
 }
 
 core::Rigid3 OdometryPath::interpolated(double stamp_s) const {

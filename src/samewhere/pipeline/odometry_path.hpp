@@ -19,6 +19,10 @@ class OdometryPath {
   // Throws ContractError without a row, and for sensor `file` without covariances.
   OdometryPath(const OdometryConfig& config, input::OdometryRows rows);
 
+  // The next row of odometry that comes with the frames, later than the last. For sensor `file` it
+  // has a covariance. Then the constructor takes the first row alone.
+  void add(const input::OdometryRow& row);
+
   double first_s() const { return rows_.front().stamp_s; }
   double last_s() const { return rows_.back().stamp_s; }
 
@@ -41,6 +45,19 @@ class OdometryPath {
   core::Rigid3 interpolated(double stamp_s) const;
   OdometryStep step(double from_s, double to_s) const;
   core::Matrix6d covariance_by_rows(double from_s, double to_s) const;
+  // Of all rows, from the first.
+  struct Positions {
+    double count = 0.0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+    void add(const Eigen::Vector3d& position);
+    Eigen::Matrix3d covariance() const;
+  };
+
+  void add_turn(const input::OdometryRow& before, const input::OdometryRow& row);
+  void add_position(const input::OdometryRow& row);
+  void find_axes();
 
   OdometryConfig config_;
   input::OdometryRows rows_;
@@ -48,6 +65,8 @@ class OdometryPath {
   DriftRates rates_;
   // Axis of the file's world that the body turns about; none: no single one.
   std::optional<Eigen::Vector3d> up_in_world_;
+  Eigen::Matrix3d turns_ = Eigen::Matrix3d::Zero();  // about each axis, radians
+  Positions positions_;
   std::optional<Eigen::Vector3d> normal_in_world_;  // of the plane that the positions lie in
 };
 

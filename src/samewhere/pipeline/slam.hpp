@@ -35,6 +35,12 @@ class Slam {
   // in a known one. Goes with the settings `odometry`, whose file is named.
   void follow(std::shared_ptr<const OdometryPath> odometry);
 
+  // Before the first frame, with `threads`: feed() does not wait for mapping. Results are applied
+  // to the first frame for which they are ready, so that a run is not repeatable; a lost camera is
+  // searched for in every few frames, not in each. What still waits: (re-)initialization, and the
+  // first frame after a gap in the recording.
+  void never_wait() { tracking_.never_wait(); }
+
   // Frames are numbered from 0, in session(). Their images are shared and must not be written to.
   // Throws what a stage threw; after that no call may follow.
   void feed(const core::Frame& frame);
@@ -44,6 +50,16 @@ class Slam {
   std::uint16_t session() const { return tracking_.session(); }
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return tracking_.frames(); }
+  // Between two frames: no keyframe is inserted from here on, and the map is not discarded; false:
+  // they are again.
+  void set_map_fixed(bool is_fixed) { tracking_.set_map_fixed(is_fixed); }
+  // The frame that was fed last, in the map that it was tracked in; that map; verdicts that mapping
+  // told with it. After finish(): the verdicts that came later.
+  const NewestFrame& newest() const { return tracking_.newest(); }
+  const scene::MapVersion& visible_map() const { return tracking_.visible_map(); }
+  const core::Ledger& newest_rows() const {
+    return is_finished_ ? stages_.mapping().unsent_rows() : tracking_.newest_rows();
+  }
   std::uint64_t describer_checksum() const {
     return stages_.loop_closing().index().describer_checksum();
   }

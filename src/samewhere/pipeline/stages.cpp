@@ -41,14 +41,16 @@ std::unique_ptr<BundleLink> link_to(Bundling& stage, const Config& config,
       config.threads, 1, hooks.before_message);
 }
 
-// One keyframe is in progress at most.
+// One keyframe is in progress at most; what tracking sends beside it need not wait for room.
+constexpr int kMappingCapacity = 4;
+
 std::unique_ptr<MappingLink> link_to(Mapping& stage, const Config& config,
                                      const SlamTestHooks& hooks) {
   return link_to<ToMapping, MapAnswer>(
       [&stage](const ToMapping& message, const MappingLink::Reply& reply) {
         stage.take(message, reply);
       },
-      config.threads, 1, hooks.before_message);
+      config.threads, kMappingCapacity, hooks.before_message);
 }
 
 }  // namespace

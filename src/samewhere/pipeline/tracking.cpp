@@ -90,6 +90,7 @@ void Tracking::feed(const core::Frame& frame) {
   MaybeTracked tracked;
   {
     const core::ScopedTimer timer(timings_, "track");
+    mapping_.forget_rows();
     exchange_with_mapping();
     const features::View view = extract(frame);
     tracked = localize(frame, view);
@@ -143,6 +144,7 @@ Tracking::MaybeTracked Tracking::localize(const core::Frame& frame, const featur
 
 void Tracking::record(const core::Frame& frame, const features::View& view,
                       const MaybeTracked& tracked) {
+  newest_ = {};
   if (!tracked) {
     const core::FrameStatus status = state_.is_initializing() && !is_led_by_odometry()
                                          ? initialization_.waiting_status(view)
@@ -150,13 +152,22 @@ void Tracking::record(const core::Frame& frame, const features::View& view,
     log_.add({.frame = view.frame, .stamp_s = view.stamp_s, .status = status});
     return;
   }
+  newest_ = {tracked->pose, motion_to(tracked->pose)};
   log_.add(map_.by_odometry(tracked->pose, state_.tracked_since_keyframe()));
   if (!is_map_fixed_ && !is_provisional(*tracked)) passing_.see(frame, log_.newest());
 }
 
+std::optional<core::Rigid3> Tracking::motion_to(const core::FramePose& newest) const {
+  if (log_.size() == 0 || !log_.newest().is_measured) return std::nullopt;
+  if (is_reference_visible(&log_.newest()))
+    return inverse(map_.world_from(log_.newest())) * map_.world_from(newest);
+  // the frame before is the keyframe in progress; this one was tracked from there
+  return state_.last_frame()->last_from_next;
+}
+
 void Tracking::insert_keyframe(const core::Frame& frame, const MaybeTracked& tracked) {
   if (!tracked || is_provisional(*tracked) || is_map_fixed_) return;
-  if (mapping_.is_keyframe_in_progress() || mapping_.is_keyframe(frame.id)) return;
+  if (!mapping_.may_insert() || mapping_.is_keyframe(frame.id)) return;
   if (is_worth_keeping(*tracked)) {
     send_keyframe(*tracked, frame.images[0]);
   } else if (log_.num_unsent() >= kMaxUnsentFrames) {
@@ -175,6 +186,7 @@ Tracking::MaybeTracked Tracking::initialize(const core::Frame& frame, const feat
 scene::TrackedView Tracking::begin_map(const core::Frame& frame, const features::View& view,
                                        InitialViews& initial) {
   discard_poses();
+  if (mapping_.is_keyframe_in_progress()) receive_map();
   map_.set_version(mapping_.initialize(std::move(initial.message)));
   const core::KeyframeId newest = map_.version().keyframes.back().id;
   mapping_.note_keyframe(view.frame);
@@ -230,22 +242,24 @@ bool Tracking::may_reinitialize(const features::View& view) const {
   const core::FramePose* last = log_.last_confirmed();
   const SessionState::MapAge age{mapping_.num_keyframes_of_map(),
                                  last == nullptr ? std::nullopt : std::optional(last->stamp_s)};
-  return state_.may_reinitialize(view.stamp_s, age) &&
+  return !is_map_fixed_ && state_.may_reinitialize(view.stamp_s, age) &&
          !relocalization_.is_undecided(view.stamp_s, last);
 }
 
 Tracking::MaybeTracked Tracking::track_in_map(const core::Frame& frame,
                                               const features::View& view) {
   MaybeTracked best = track_from_last(view);
-  if (is_missing_or_weak(best) && mapping_.is_keyframe_in_progress()) {
+  if (is_missing_or_weak(best) && mapping_.is_keyframe_in_progress() && mapping_.may_receive()) {
     receive_map();
     track_again(view, best);
   }
   if (is_missing_or_weak(best) && can_insert_last()) {
     // the reference is too far away; what the last frame shows is nearer
     send_keyframe(state_.last_frame()->tracked, {});
-    receive_map();
-    track_again(view, best);
+    if (mapping_.may_receive()) {
+      receive_map();
+      track_again(view, best);
+    }
   }
   if (best && best->pose.num_inliers >= config_.track.sure_inliers) return best;
   MaybeTracked by_depth = track_by_depth(frame, view);
@@ -262,11 +276,16 @@ core::Rigid3 Tracking::predicted_motion(const features::View& view) const {
   return measured.value_or(last.last_from_next);
 }
 
-bool Tracking::is_plausible(const scene::TrackedView& tracked) const {
+bool Tracking::is_reference_visible(const core::FramePose* frame) const {
+  return frame == nullptr || frame->reference_keyframe.index() < map_.version().keyframes.size();
+}
+
+bool Tracking::is_plausible(const scene::TrackedView& tracked) {
   constexpr double kGap_s = 1.0;
   const core::FramePose* last = log_.last_confirmed();
   if (config_.verify.prior == verify::Prior::kUnique || last == nullptr) return true;
   if (tracked.pose.stamp_s - last->stamp_s <= kGap_s) return true;
+  if (!is_reference_visible(last) || !is_reference_visible(log_.before(*last))) receive_map();
   const scene::MapVersion& map = map_.version();
   return MotionPrediction(map, {last, log_.before(*last)}, tracked.pose.stamp_s, metre_of(map))
       .allows(map, tracked.pose);
@@ -312,9 +331,10 @@ Tracking::MaybeTracked Tracking::track_by_depth(const core::Frame& frame,
 std::optional<std::vector<Place>> Tracking::places_for(const core::Frame& frame,
                                                        const features::View& view) {
   const bool is_provisional = relocalization_.is_provisional();
-  if (is_provisional && !mapping_.are_places_due(log_.size())) return std::nullopt;
+  const bool is_asked_before = is_provisional || !mapping_.waits_for_places();
+  if (is_asked_before && !mapping_.are_places_due(log_.size())) return std::nullopt;
   MapAnswer answer =
-      is_provisional ? mapping_.receive_places() : mapping_.find_places(view, frame.images[0]);
+      is_asked_before ? mapping_.receive_places() : mapping_.find_places(view, frame.images[0]);
   const bool has_changed = answer.map.number != map_.version().number;
   map_.set_version(std::move(answer.map));
   if (has_changed && map_.has_local_map())
@@ -326,13 +346,19 @@ std::optional<std::vector<Place>> Tracking::places_for(const core::Frame& frame,
 }
 
 void Tracking::ask_for_places(const core::Frame& frame, const features::View& view) {
-  if (!relocalization_.wants_places() || mapping_.are_places_asked()) return;
+  if (mapping_.is_keyframe_in_progress() || mapping_.are_places_asked()) return;
+  if (!relocalization_.is_provisional() && mapping_.waits_for_places()) return;
+  if (relocalization_.is_provisional() && !relocalization_.wants_places()) return;
   mapping_.ask_places(view, frame.images[0]);
   relocalization_.note_asked();
 }
 
 Tracking::MaybeTracked Tracking::relocalize(const core::Frame& frame, const features::View& view) {
   const std::optional<std::vector<Place>> places = places_for(frame, view);
+  if (!places && !relocalization_.is_provisional()) {
+    ask_for_places(frame, view);
+    return std::nullopt;
+  }
   const core::FramePose* last = log_.last_confirmed();
   const LastMotion motion{last, last == nullptr ? nullptr : log_.before(*last)};
   auto result = relocalization_.evaluate(view, map_.version(), places ? &*places : nullptr, motion);
@@ -402,7 +428,7 @@ bool Tracking::is_worth_keeping(const scene::TrackedView& tracked) const {
 
 bool Tracking::can_insert_last() const {
   const scene::TrackedView& last = state_.last_frame()->tracked;
-  return !is_map_fixed_ && !mapping_.is_keyframe(last.view.frame) &&
+  return !is_map_fixed_ && mapping_.may_insert() && !mapping_.is_keyframe(last.view.frame) &&
          map::can_keep(map_.version(), last.view, config_.map);
 }
 

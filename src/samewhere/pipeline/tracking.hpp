@@ -24,6 +24,13 @@
 
 namespace samewhere::pipeline {
 
+// The frame that was fed last, in the map that it was tracked in.
+struct NewestFrame {
+  std::optional<core::FramePose> pose;  // none: lost
+  // Of the body now in that at the frame before; none: one of both has no pose.
+  std::optional<core::Rigid3> last_from_newest;
+};
+
 // The first stage: poses of the frames, and which of them become keyframes. It uses the map as
 // mapping answered last. A new keyframe is visible `map.visible_after_frames` frames later, or at
 // once if tracking is weak without it.
@@ -47,6 +54,17 @@ class Tracking {
 
   // One entry per frame fed.
   const std::vector<core::FramePose>& frames() const { return log_.frames(); }
+  // The map that the newest frame was tracked in.
+  const scene::MapVersion& visible_map() const { return map_.version(); }
+  const NewestFrame& newest() const { return newest_; }
+  // Verdicts that mapping told with the newest frame.
+  const core::Ledger& newest_rows() const { return mapping_.rows(); }
+
+  // Fixed: no keyframe is inserted, and the map is not discarded.
+  void set_map_fixed(bool is_fixed) { is_map_fixed_ = is_fixed; }
+  // Before the first frame: see Slam::never_wait().
+  void never_wait() { mapping_.never_wait(); }
+
   core::Timings timings() const;
   SessionPhase phase() const { return state_.phase(); }
   // Why the last views that were tried did not begin a map, in words.
@@ -71,6 +89,8 @@ class Tracking {
   void record(const core::Frame& frame, const features::View& view, const MaybeTracked& tracked);
   void insert_keyframe(const core::Frame& frame, const MaybeTracked& tracked);
 
+  std::optional<core::Rigid3> motion_to(const core::FramePose& newest) const;
+
   // localize: one for each state.
   MaybeTracked initialize(const core::Frame& frame, const features::View& view);
   MaybeTracked track_in_map(const core::Frame& frame, const features::View& view);
@@ -92,7 +112,9 @@ class Tracking {
 
   // After a gap in the recording the camera may be in a look-alike place: whether motion predicted
   // the pose.
-  bool is_plausible(const scene::TrackedView& tracked) const;
+  bool is_plausible(const scene::TrackedView& tracked);
+  // Whether the reference keyframe of a frame is in the map that tracking sees.
+  bool is_reference_visible(const core::FramePose* frame) const;
   MaybeTracked track_from_last(const features::View& view) const;
   // After the local map has changed: the pose with more inliers is kept.
   void track_again(const features::View& view, MaybeTracked& best) const;
@@ -130,6 +152,7 @@ class Tracking {
   VisibleMap map_;
   MappingExchange mapping_;
   FrameLog log_;
+  NewestFrame newest_;
   PassingThings passing_;
   track::ScaleDriftDetector scale_drift_detector_;
   std::vector<track::ScaleDriftInterval> scale_drift_;

@@ -97,6 +97,7 @@ void MappedSlam::begin() {
 void MappedSlam::keep(const scene::MapVersion& map, const pipeline::MapNews& news) {
   for (const auto& thumbnail : news.thumbnails) thumbnails_[thumbnail.frame] = thumbnail.jpeg;
   if (saver_) saver_->save(map, news);
+  if (plan_.watch) plan_.watch(map, news);
 }
 
 // The first frame says which camera it is.

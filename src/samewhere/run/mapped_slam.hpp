@@ -21,6 +21,8 @@ struct MapPlan {
   // before, nor at all if the source gives none. Returns a new file for the map, which grows with
   // it, a commit per keyframe. May be empty.
   std::function<std::filesystem::path()> begin = {};
+  // Called in mapping's thread with each map that is kept. May be empty.
+  pipeline::KeepMap watch = {};
 };
 
 // A Slam, in a known map or from nothing, and what keeps its map.
@@ -33,6 +35,9 @@ class MappedSlam {
   MappedSlam& operator=(const MappedSlam&) = delete;
 
   const pipeline::Slam& slam() const { return *slam_; }
+  // As in Slam. A map that is known and fixed stays so.
+  void never_wait() { slam_->never_wait(); }
+  void set_map_fixed(bool is_fixed) { slam_->set_map_fixed(is_fixed || plan_.is_known_fixed); }
   // Whether the scale is metric: this run or those that made the map measured depth.
   bool is_metric() const { return is_metric_; }
 
