@@ -8,13 +8,14 @@ by line style, too, so that they can be told apart in grey.
 
 import argparse
 import pathlib
+import re
 import sys
 from typing import Any, Optional, Sequence
 
 import numpy
 import numpy.typing
 
-from ._results import CHECKS, Array, Error, ResultsError, Run, error_of, funnel, precision_recall, read_run, read_tum
+from ._results import CHECKS, MAX_GAP_S, Array, Error, ResultsError, Run, error_of, funnel, precision_recall, read_run, read_tum
 
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 STYLES = ["-", "--", "-.", ":"]
@@ -172,14 +173,23 @@ def plot_comparison(runs: Sequence[Run], errors: Sequence[Optional[Error]], axes
 
 
 def _read_places(file: pathlib.Path) -> numpy.typing.NDArray[numpy.uint8]:
+    expected = "expected rows of 0 (different), 1 (same) and 2 (near), or a binary PGM of them"
     try:
-        places = numpy.loadtxt(file, dtype=numpy.uint8, ndmin=2)
+        content = file.read_bytes()
+        if content.startswith(b"P5"):
+            header = re.match(rb"P5\s+(?:#.*\s+)*(\d+)\s+(\d+)\s+\d+\s", content)
+            if header is None:
+                raise ValueError
+            size = (int(header[2]), int(header[1]))
+            places = numpy.frombuffer(content[header.end() :], numpy.uint8, size[0] * size[1]).reshape(size)
+        else:
+            places = numpy.loadtxt(content.decode("ascii").splitlines(), dtype=numpy.uint8, ndmin=2)
     except OSError:
         raise ResultsError(f"{file}: there is no such file, or it cannot be read") from None
     except ValueError:
-        raise ResultsError(f"{file}: expected rows of 0 (different), 1 (same) and 2 (near)") from None
-    if places.shape[0] != places.shape[1]:
-        raise ResultsError(f"{file}: {places.shape[0]} x {places.shape[1]} numbers; expected a square matrix")
+        raise ResultsError(f"{file}: cannot be read; {expected}") from None
+    if places.shape[0] != places.shape[1] or places.max(initial=0) > 2:
+        raise ResultsError(f"{file}: {places.shape[0]} x {places.shape[1]} numbers up to {places.max(initial=0)}; {expected}, as many as columns")
     return places
 
 
@@ -223,7 +233,7 @@ def plot_runs(folders: Sequence[pathlib.Path], out: pathlib.Path, kind: str = "p
     truth_s, truth_m = read_tum(truth) if truth else (numpy.empty(0), numpy.empty((0, 3)))
     errors = [error_of(run, truth_s, truth_m, is_scale_free) for run in runs]
     if truth and not any(errors):
-        raise ResultsError(f"{truth}: fewer than 3 poses of any run have a truth within {0.1} s; expected stamps of the same clock")
+        raise ResultsError(f"{truth}: fewer than 3 poses of any run have a truth within {MAX_GAP_S} s; expected stamps of the same clock")
     place_truth = _read_places(places) if places else None
     out.mkdir(parents=True, exist_ok=True)
     writer = _Writer(out, kind)
@@ -268,7 +278,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--format", choices=["svg", "pdf", "png"], default="pdf", help="kind of file (default: pdf)")
     parser.add_argument("--truth", metavar="FILE", type=pathlib.Path, help="true trajectory of camera 0, TUM format, for all runs")
     parser.add_argument("--free-scale", action="store_true", help="align with a free scale (one camera without depth)")
-    parser.add_argument("--places", metavar="FILE", type=pathlib.Path, help="same_place.txt: which frames show the same place")
+    parser.add_argument("--places", metavar="FILE", type=pathlib.Path, help="same_place.txt or .pgm: which frames show the same place")
     parser.add_argument("--window", metavar="FRAMES", type=int, default=0, help="matches of frames no farther apart are no loops (default: 0)")
     return parser
 

@@ -53,7 +53,7 @@ def test_rpe_of_a_constant_drift() -> None:
     straight = Trajectory(estimate.stamps_s, poses.copy())
     poses[:, 0, 3] = 0.02 * estimate.stamps_s  # 2 cm a second
     rpe = evaluate.rpe(straight, Trajectory(estimate.stamps_s, poses), delta_s=1.0)
-    assert rpe is not None and rpe.translation_rmse_m == pytest.approx(0.02) and rpe.rotation_rmse_deg < 1e-6
+    assert rpe is not None and rpe.translation_rmse_m == pytest.approx(0.02, rel=1e-2) and rpe.rotation_rmse_deg < 1e-6
     assert evaluate.rpe(straight, straight, delta_s=1000.0) is None
 
 
