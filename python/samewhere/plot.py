@@ -51,7 +51,7 @@ def plot_trajectory(run: Run, error: Optional[Error], axes: Any) -> None:
     points_m = error.truth_m if error else run.positions_m
     first, second = _plane(points_m)
     if error:
-        axes.plot(error.truth_m[:, first], error.truth_m[:, second], color="#999999", linewidth=3, alpha=0.5, label="truth", zorder=1)
+        axes.plot(error.truth_m[:, first], error.truth_m[:, second], color="#bbbbbb", linewidth=5, label="truth", zorder=1)
         marks = axes.scatter(error.estimate_m[:, first], error.estimate_m[:, second], c=error.error_m, s=5, cmap="viridis", vmin=0, zorder=2)
         axes.figure.colorbar(marks, ax=axes, label="position error (m)", shrink=0.8)
         axes.set_title(f"{run.name}: ATE RMSE {error.rmse_m:.3g} m, n = {len(error.error_m)}", fontsize=9)
@@ -60,8 +60,16 @@ def plot_trajectory(run: Run, error: Optional[Error], axes: Any) -> None:
         axes.plot(points_m[:, first], points_m[:, second], **_line(0))
         axes.set_title(f"{run.name}: {len(points_m)} poses", fontsize=9)
     axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.08)
     axes.set_xlabel(f"{'xyz'[first]} (m)")
     axes.set_ylabel(f"{'xyz'[second]} (m)")
+
+
+def _height_of(points_m: Array, width: float) -> float:
+    """Of a figure of this width, so that the path fills it."""
+    first, second = _plane(points_m)
+    extent_m = numpy.ptp(points_m, axis=0)
+    return float(numpy.clip(width * extent_m[second] / max(extent_m[first], 1e-9) + 0.8, 2.4, 1.4 * width))
 
 
 def _lost_spans(run: Run) -> list[tuple[float, float]]:
@@ -129,11 +137,11 @@ def plot_funnel(runs: Sequence[Run], axes: Any) -> None:
     axes.grid(axis="y", visible=False)
     axes.set_xlabel("loop candidates")
     if len(runs) > 1:
-        axes.legend(loc="best")
+        axes.legend(loc="lower right")
 
 
 def plot_timing(runs: Sequence[Run], axes: Any) -> None:
-    """Median (bar) and 95 % point (line) of each stage, milliseconds, largest total first."""
+    """Median (mark) and 95 % point (end of the line) of each stage, milliseconds, largest total first."""
     total: dict[str, float] = {}
     for run in runs:
         for stage, times in run.stages_ms.items():
@@ -144,22 +152,22 @@ def plot_timing(runs: Sequence[Run], axes: Any) -> None:
         at = numpy.arange(len(names)) + (index - (len(runs) - 1) / 2) * height
         median = numpy.array([run.stages_ms.get(name, {}).get("median_ms", numpy.nan) for name in names])
         late = numpy.array([run.stages_ms.get(name, {}).get("p95_ms", numpy.nan) for name in names])
-        hatch = ["", "///", "...", "xxx"][index % 4]
-        axes.barh(at, median, height, label=run.name, color=COLOURS[index % len(COLOURS)], hatch=hatch, edgecolor="white", linewidth=0.5)
-        axes.hlines(at, median, late, color="black", linewidth=1)
-        axes.plot(late, at, "|", color="black", markersize=5)
+        colour = COLOURS[index % len(COLOURS)]
+        axes.plot(median, at, "os^D"[index % 4], color=colour, markersize=5, label=run.name)
+        axes.hlines(at, median, late, color=colour, linewidth=1.2)
+        axes.plot(late, at, "|", color=colour, markersize=6)
     axes.set_xscale("log")
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    axes.set_xlabel("time per call (ms): median, to 95 % point")
+    axes.set_xlabel("time per call (ms): median to 95 % point")
     if len(runs) > 1:
         axes.legend(loc="best")
 
 
 def plot_comparison(runs: Sequence[Run], errors: Sequence[Optional[Error]], axes: Any) -> None:
     """Distribution of the position error of each run: median, quartiles, 5 and 95 % points; the diamond is the RMSE."""
-    known = [(run, error) for run, error in zip(runs, errors) if error is not None]
+    known = [(run, error) for run, error in zip(runs, errors) if error is not None][::-1]  # the first on top
     axes.boxplot([error.error_m for _, error in known], vert=False, whis=(5, 95), showfliers=False, widths=0.5,
                  medianprops={"color": COLOURS[1]})
     for position, (_, error) in enumerate(known, 1):
@@ -169,7 +177,7 @@ def plot_comparison(runs: Sequence[Run], errors: Sequence[Optional[Error]], axes
     axes.set_ylim(0.5, len(known) + 0.9)
     axes.set_xlim(left=0)
     axes.grid(axis="y", visible=False)
-    axes.set_xlabel("position error (m)")
+    axes.set_xlabel("position error (m): quartiles, median, 5 and 95 % points; diamond: RMSE")
 
 
 def _read_places(file: pathlib.Path) -> numpy.typing.NDArray[numpy.uint8]:
@@ -241,7 +249,7 @@ def plot_runs(folders: Sequence[pathlib.Path], out: pathlib.Path, kind: str = "p
         for run, error in zip(runs, errors):
             if len(run.stamps_s):
                 name = "trajectory" if len(runs) == 1 else "trajectory-" + run.name.replace("/", "-")
-                writer.write(name, 5, 4, lambda axes: plot_trajectory(run, error, axes))
+                writer.write(name, 5, _height_of(error.truth_m if error else run.positions_m, 4.0), lambda axes: plot_trajectory(run, error, axes))
         if any(errors):
             writer.write("error", 6, 2.6, lambda axes: plot_error(runs, errors, axes))
         if len(runs) > 1 and any(errors):
