@@ -228,7 +228,7 @@ void bind_loop_verifier(py::module_& module) {
       module, "LoopVerifier",
       R"(Verification of one loop candidate, for a pose graph kept elsewhere (GTSAM, g2o).
 
-Holds no state between calls.)")
+Holds no state between calls. One thread at a time calls it.)")
       .def(py::init([](const Calibration& calibration, const std::vector<std::string>& settings,
                        std::optional<Prior> prior) {
              const py::gil_scoped_release release;

@@ -19,7 +19,7 @@ struct OdometryBetween {
 
 // Verification of one loop candidate, for a pose graph kept elsewhere (GTSAM, g2o). Geometry,
 // odometry gate and look-alike places as in SLAM; without a map there are no competing hypotheses
-// of earlier loops. Holds no state between calls.
+// of earlier loops. Holds no state between calls. One thread at a time calls it.
 class LoopVerifier {
  public:
   // Throws InputError.

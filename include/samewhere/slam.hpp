@@ -99,7 +99,8 @@ class Slam {
   // Ends the session and begins a new one with an empty map. Options::map and save_to are not used
   // again.
   void reset();
-  // No keyframe is inserted from the next frame on; tracking and relocalization go on.
+  // No keyframe is inserted from the next frame on; tracking and relocalization go on. A map that
+  // has not begun begins all the same.
   void pause_mapping();
   void resume_mapping();
 

@@ -11,6 +11,10 @@
 
 namespace samewhere {
 
+// The layout of poses, which -march options would change.
+static_assert(EIGEN_MAX_ALIGN_BYTES == 16,
+              "compile with -DEIGEN_MAX_ALIGN_BYTES=16, as libsamewhere is");
+
 // a_from_b: takes a point in b to the same point in a. Metres; without depth or a second camera the
 // unit of the map.
 using Pose = Eigen::Isometry3d;

@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -6,10 +7,37 @@
 #include <samewhere/core/model_file.hpp>
 
 namespace samewhere::core {
+namespace {
+
+// The shared library or the program that holds this function; empty: not known.
+std::filesystem::path own_file() {
+  static const int anchor = 0;
+  Dl_info info{};
+  std::error_code error;
+  const bool is_known = dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr;
+  // a program is named as it was called
+  const bool is_library = is_known && std::filesystem::path(info.dli_fname).is_absolute();
+  return std::filesystem::canonical(is_library ? info.dli_fname : "/proc/self/exe", error);
+}
+
+// The models that come with the program: of an installed one, which may have been moved, those
+// under its prefix (bin/, lib/ or lib/x86_64-linux-gnu/); else those of the source tree.
+std::filesystem::path models_folder() {
+  const std::filesystem::path folder = own_file().parent_path();
+  for (const char* up : {"..", "../.."}) {
+    std::error_code error;
+    const auto models =
+        std::filesystem::weakly_canonical(folder / up / "share" / "samewhere" / "models", error);
+    if (!folder.empty() && !error && std::filesystem::is_directory(models, error)) return models;
+  }
+  return SAMEWHERE_MODELS_FOLDER;
+}
+
+}  // namespace
 
 std::filesystem::path find_model(const std::string& setting, const std::string& file,
                                  const std::string& expected) {
-  const std::filesystem::path shipped = std::filesystem::path(SAMEWHERE_MODELS_FOLDER) / file;
+  const std::filesystem::path shipped = models_folder() / file;
   const bool is_path = file.find('/') != std::string::npos;
   const bool is_shipped = !file.empty() && !is_path && is_there(shipped);
   std::error_code ignored;  // what cannot be looked at is not confused
@@ -23,7 +51,7 @@ std::filesystem::path find_model(const std::string& setting, const std::string& 
   if (is_shipped) return shipped;
   if (!file.empty() && is_there(file)) return file;
   throw InputError(fmt::format("{} = {}: there is no such file, here or in {}; expected {}",
-                               setting, file.empty() ? "\"\"" : file, SAMEWHERE_MODELS_FOLDER,
+                               setting, file.empty() ? "\"\"" : file, models_folder().string(),
                                expected));
 }
 

@@ -6,10 +6,10 @@
 namespace samewhere::core {
 
 // A file that came out of training. A name without a slash is one of those that come with the
-// program (the folder models/ of the source it was built from), or else a file of the working
-// directory: what lies there by chance is never taken for a shipped one, and a warning says where
-// both exist. With a slash it is the path itself. Throws InputError naming the setting, both places
-// and what was expected ("an ONNX network") if it is in neither.
+// program (share/samewhere/models of the installed one, models/ of the source tree), or else a file
+// of the working directory: what lies there by chance is never taken for a shipped one, and a
+// warning says where both exist. With a slash it is the path itself. Throws InputError naming the
+// setting, both places and what was expected ("an ONNX network") if it is in neither.
 std::filesystem::path find_model(const std::string& setting, const std::string& file,
                                  const std::string& expected);
 

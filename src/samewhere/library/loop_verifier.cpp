@@ -57,6 +57,7 @@ void check(const OdometryBetween& odometry) {
 struct LoopVerifier::Parts {
   Calibration calibration;
   pipeline::Config config;
+  std::unique_ptr<describe::Describer> describer;
 
   struct Seen {
     core::Frame frame;
@@ -77,8 +78,9 @@ LoopVerifier::LoopVerifier(const Calibration& calibration, const std::vector<std
                            std::optional<Prior> prior)
     : parts_(library::at_border([&] {
         cv::setNumThreads(1);
+        const pipeline::Config config = library::config_of("default", settings, prior);
         auto parts = std::make_unique<Parts>(
-            Parts{calibration, library::config_of("default", settings, prior)});
+            Parts{calibration, config, describe::make_describer(config.describe)});
         const library::FrameIntake checked(calibration, parts->config);
         return parts;
       })) {}
@@ -91,13 +93,12 @@ LoopVerdict LoopVerifier::verify(const Frame& match, const Frame& query,
     if (odometry) check(*odometry);
     const Parts::Seen old = parts_->seen(match, kMatch);
     const Parts::Seen now = parts_->seen(query, kQuery);
-    const auto describer = describe::make_describer(parts_->config.describe);
     const core::Candidate candidate{
         .id = core::CandidateId(0),
         .query = kQuery,
         .match = kMatch,
-        .similarity = similarity_of(describer->describe(kQuery, now.frame.images[0]),
-                                    describer->describe(kMatch, old.frame.images[0]))};
+        .similarity = similarity_of(parts_->describer->describe(kQuery, now.frame.images[0]),
+                                    parts_->describer->describe(kMatch, old.frame.images[0]))};
     const scene::MapVersion map = map_of(old.view, now.view, odometry);
     const pipeline::KeyframeOf keyframe_of{{kMatch, core::KeyframeId(0)},
                                            {kQuery, core::KeyframeId(1)}};
