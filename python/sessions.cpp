@@ -5,23 +5,57 @@ namespace {
 
 using NoGil = py::call_guard<py::gil_scoped_release>;
 
+// A class of the library that does not refuse a second thread by itself.
+template <class T>
+struct OneThread : T {
+  using T::T;
+  bool is_busy = false;
+};
+
+// For the life of a call; begins and ends with the GIL. Throws UsageError if another one is there.
+class Turn {
+ public:
+  Turn(bool& is_busy, const std::string& call) : is_busy_(is_busy) {
+    if (is_busy_) {
+      throw UsageError(call +
+                       ": another call of this object is in progress; expected one thread at a "
+                       "time");
+    }
+    is_busy_ = true;
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  ~Turn() { is_busy_ = false; }
+
+ private:
+  bool& is_busy_;
+};
+
 // pybind11 holds no pointer to const; the bound classes cannot change a map.
 std::shared_ptr<Map> shared(const std::shared_ptr<const Map>& map) {
   return std::const_pointer_cast<Map>(map);
 }
 
 void bind_recording(py::module_& module) {
-  py::class_<Recording>(
+  using Class = OneThread<Recording>;
+  py::class_<Class>(
       module, "Recording",
       R"(Frames of a recording of any format that `samewhere run` reads, or of twin:PRESET.
 
 for frame in recording: ...   Each Frame has arrays of its own. Raises InputError.)")
       .def(py::init<const std::string&, const std::vector<std::string>&>(), py::arg("source"),
            py::arg("settings") = std::vector<std::string>{}, NoGil())
-      .def("calibration", &Recording::calibration, NoGil(),
-           "Reads the first frame. Raises InputError if there is none, or no calibration.")
+      .def(
+          "calibration",
+          [](Class& recording) {
+            const Turn turn(recording.is_busy, "calibration()");
+            const py::gil_scoped_release release;
+            return recording.calibration();
+          },
+          "Reads the first frame. Raises InputError if there is none, or no calibration.")
       .def("__iter__", [](py::object self) { return self; })
-      .def("__next__", [](Recording& recording) {
+      .def("__next__", [](Class& recording) {
+        const Turn turn(recording.is_busy, "next()");
         std::optional<Frame> frame;
         {
           const py::gil_scoped_release release;
@@ -224,7 +258,8 @@ void bind_loop_verifier(py::module_& module) {
       .def_property_readonly("match_from_query",
                              [](const OdometryBetween& o) { return o.match_from_query; })
       .def_property_readonly("covariance", [](const OdometryBetween& o) { return o.covariance; });
-  py::class_<LoopVerifier, Session<LoopVerifier>>(
+  using Class = OneThread<LoopVerifier>;
+  py::class_<Class, Session<Class>>(
       module, "LoopVerifier",
       R"(Verification of one loop candidate, for a pose graph kept elsewhere (GTSAM, g2o).
 
@@ -232,14 +267,15 @@ Holds no state between calls. One thread at a time calls it.)")
       .def(py::init([](const Calibration& calibration, const std::vector<std::string>& settings,
                        std::optional<Prior> prior) {
              const py::gil_scoped_release release;
-             return Session<LoopVerifier>(new LoopVerifier(calibration, settings, prior));
+             return Session<Class>(new Class(calibration, settings, prior));
            }),
            py::arg("calibration"), py::arg("settings") = std::vector<std::string>{},
            py::arg("prior") = py::none())
       .def(
           "verify",
-          [](const LoopVerifier& verifier, const ArrayFrame& match, const ArrayFrame& query,
+          [](Class& verifier, const ArrayFrame& match, const ArrayFrame& query,
              const std::optional<OdometryBetween>& odometry) {
+            const Turn turn(verifier.is_busy, "verify()");
             const py::gil_scoped_release release;
             return verifier.verify(match.frame, query.frame, odometry);
           },

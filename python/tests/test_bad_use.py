@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import threading
 from typing import Any, Callable
 
 import numpy
@@ -12,6 +13,10 @@ import samewhere
 
 GRAY = numpy.zeros((48, 64), numpy.uint8)
 BGR = numpy.zeros((48, 64, 3), numpy.uint8)
+
+
+def camera(body_from_camera: Any) -> samewhere.Camera:
+    return samewhere.Camera(64, 48, 60, 60, 32, 24, body_from_camera=body_from_camera)
 
 
 @pytest.mark.parametrize(
@@ -37,10 +42,10 @@ BGR = numpy.zeros((48, 64, 3), numpy.uint8)
         (lambda: samewhere.Frame(0.0, GRAY, GRAY.astype(">u2")), "depth: shape (48, 64) of >u2; expected"),
         (lambda: samewhere.Frame(0.0, GRAY, [1.0]), "depth: list; expected a numpy array"),
         (lambda: samewhere.Frame(0.0, GRAY, GRAY.astype("u2"), depth_units_per_m=0.0), "depth_units_per_m: 0.0; expected more than 0"),
-        (lambda: samewhere.Camera(64, 48, 60, 60, 32, 24, body_from_camera=numpy.eye(3)), "body_from_camera: shape (3, 3) of float64; expected a 4 x 4"),
-        (lambda: samewhere.Camera(64, 48, 60, 60, 32, 24, body_from_camera=2 * numpy.eye(4)), "body_from_camera: another last row; expected a 4 x 4"),
+        (lambda: camera(numpy.eye(3)), "body_from_camera: shape (3, 3) of float64; expected a 4 x 4"),
+        (lambda: camera(2 * numpy.eye(4)), "body_from_camera: another last row; expected a 4 x 4"),
         (lambda: samewhere.OdometryFrame(samewhere.Frame(0.0, GRAY), "pose"), "odom_from_body: str; expected a 4 x 4 array"),
-        (lambda: samewhere.OdometryFrame(samewhere.Frame(0.0, GRAY), numpy.eye(4), numpy.eye(5)), "covariance: shape (5, 5) of float64; expected a 6 x 6"),
+        (lambda: samewhere.OdometryFrame(samewhere.Frame(0.0, GRAY), numpy.eye(4), [1.0]), "covariance: list; expected a 6 x 6 array"),
         (lambda: samewhere.Recording("no-such-folder"), "no-such-folder"),
         (lambda: samewhere.LoopDetector().add(BGR), "image: shape (48, 64, 3) of uint8; expected format="),
         (lambda: samewhere.LoopDetector(["verify.no_such_key=1"]), "no_such_key"),
@@ -121,3 +126,36 @@ def test_options_are_an_object_or_keywords(walk: Walk) -> None:
         samewhere.Slam(walk.calibration, no_such_option=1)
     with pytest.raises(samewhere.InputError, match="is there already"):
         samewhere.Slam(walk.calibration, save_to=pathlib.Path(__file__))
+
+
+def test_a_second_thread_is_refused_and_the_first_goes_on(walk: Walk) -> None:
+    slam, verifier = samewhere.Slam(walk.calibration), samewhere.LoopVerifier(walk.calibration)
+    works = [lambda index: slam.track(walk.frames[index]), lambda index: verifier.verify(walk.frames[0], walk.frames[4])]
+    for work in works:
+        refused: "list[Exception]" = []
+        is_over = threading.Event()
+
+        def disturb() -> None:
+            while not is_over.is_set():
+                try:
+                    work(0)
+                except (samewhere.UsageError, samewhere.InputError) as error:
+                    refused.append(error)
+
+        work(0)
+        other = threading.Thread(target=disturb)
+        other.start()
+        num_done = 0
+        for index in range(1, 2000):
+            try:
+                work(min(num_done + 1, len(walk.frames) - 1))
+                num_done += 1
+            except samewhere.UsageError as error:
+                refused.append(error)
+            except samewhere.InputError:
+                break  # all frames are tracked
+            if num_done >= 8 and any(isinstance(error, samewhere.UsageError) for error in refused):
+                break
+        is_over.set()
+        other.join()
+        assert num_done >= 8 and any("one thread at a time" in str(error) for error in refused)
