@@ -9,7 +9,7 @@ include(CMakePackageConfigHelpers)
 file(WRITE ${CMAKE_BINARY_DIR}/package/empty.cpp "")
 add_library(samewhere_shared SHARED ${CMAKE_BINARY_DIR}/package/empty.cpp)
 # as a whole: nothing refers to the classes from inside
-target_link_libraries(samewhere_shared PRIVATE -Wl,--whole-archive samewhere_library -Wl,--no-whole-archive)
+target_link_libraries(samewhere_shared PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,samewhere_library>)
 target_link_libraries(samewhere_shared INTERFACE Eigen3::Eigen)
 target_link_options(samewhere_shared PRIVATE -Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/samewhere.map -Wl,--no-undefined)
 target_include_directories(samewhere_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -28,6 +28,7 @@ install(EXPORT samewhere NAMESPACE samewhere:: FILE samewhereTargets.cmake DESTI
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/samewhereConfig.cmake.in ${CMAKE_BINARY_DIR}/package/samewhereConfig.cmake
                               INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/samewhereConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+file(RELATIVE_PATH prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/samewhere.pc.in ${CMAKE_BINARY_DIR}/package/samewhere.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/package/samewhereConfig.cmake ${CMAKE_BINARY_DIR}/package/samewhereConfigVersion.cmake
         DESTINATION ${package_folder} COMPONENT development)
