@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -151,11 +152,21 @@ Verdicts verdicts_of(const core::Ledger& ledger) {
   return verdicts;
 }
 
-std::size_t num_different(const Verdicts& a, const Verdicts& b) {
+// Prints those that differ.
+std::size_t num_different(const Verdicts& live, const Verdicts& of_run) {
+  std::set<std::uint64_t> candidates;
+  for (const auto& [candidate, text] : live) candidates.insert(candidate);
+  for (const auto& [candidate, text] : of_run) candidates.insert(candidate);
   std::size_t count = 0;
-  for (const auto& [candidate, text] : a)
-    count += b.contains(candidate) && b.at(candidate) == text ? 0 : 1;
-  for (const auto& [candidate, text] : b) count += a.contains(candidate) ? 0 : 1;
+  for (const std::uint64_t candidate : candidates) {
+    const auto a = live.find(candidate);
+    const auto b = of_run.find(candidate);
+    const std::string of_a = a == live.end() ? "none" : a->second;
+    const std::string of_b = b == of_run.end() ? "none" : b->second;
+    if (of_a == of_b) continue;
+    ++count;
+    core::print("  candidate {}: live {}, run {}\n", candidate, of_a, of_b);
+  }
   return count;
 }
 

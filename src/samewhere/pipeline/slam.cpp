@@ -68,6 +68,9 @@ void Slam::finish() {
   is_broken_ = true;
   tracking_.finish();
   stages_.finish();
+  last_rows_ = tracking_.newest_rows();
+  const core::Ledger& unsent = stages_.mapping().unsent_rows();
+  last_rows_.insert(last_rows_.end(), unsent.begin(), unsent.end());
   ledger_ = stages_.loop_closing().ledger();
   const core::Ledger& changes = stages_.mapping().later_verdicts();
   ledger_.insert(ledger_.end(), changes.begin(), changes.end());

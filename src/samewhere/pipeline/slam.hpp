@@ -58,7 +58,7 @@ class Slam {
   const NewestFrame& newest() const { return tracking_.newest(); }
   const scene::MapVersion& visible_map() const { return tracking_.visible_map(); }
   const core::Ledger& newest_rows() const {
-    return is_finished_ ? stages_.mapping().unsent_rows() : tracking_.newest_rows();
+    return is_finished_ ? last_rows_ : tracking_.newest_rows();
   }
   std::uint64_t describer_checksum() const {
     return stages_.loop_closing().index().describer_checksum();
@@ -92,7 +92,8 @@ class Slam {
 
   Stages stages_;  // tracking sends to them
   Tracking tracking_;
-  core::Ledger ledger_;  // after finish()
+  core::Ledger ledger_;     // after finish()
+  core::Ledger last_rows_;  // that came after the last frame
   bool is_finished_ = false;
   bool is_broken_ = false;  // a stage has thrown
 };

@@ -100,6 +100,7 @@ void Tracking::feed(const core::Frame& frame) {
 }
 
 void Tracking::finish() {
+  mapping_.forget_rows();
   if (mapping_.is_keyframe_in_progress()) receive_map();
   mapping_.finish(log_.take_unsent());
 }
