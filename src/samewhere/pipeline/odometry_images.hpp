@@ -19,9 +19,10 @@ struct OdometryMotion {
 // The motion that odometry and images together give. Images: the body after in the body before by
 // features, none where they show too few landmarks.
 //
-// In a gap of odometry the motion is that of the images. Odometry in a plane: height, roll and pitch are those of the images. What no image has seen, as a
-// ride in a lift, leaves the height unknown. The rest of the pose stays that of odometry. Where
-// images contradict it (a slipping wheel), its covariance is enlarged by the difference.
+// In a gap of odometry the motion is that of the images. Odometry in a plane: height, roll and
+// pitch are those of the images. What no image has seen, as a ride in a lift, leaves the height
+// unknown. The rest of the pose stays that of odometry. Where images contradict it (a slipping
+// wheel), its covariance is enlarged by the difference.
 geometry::UncertainPose combine_with_images(const OdometryMotion& odometry,
                                             const std::optional<geometry::UncertainPose>& images,
                                             const verify::SystematicDrift& drift);
