@@ -14,22 +14,22 @@ constexpr double kVisualEdge_m =
 constexpr double kVisualEdge_rad = 0.005;
 constexpr double kMaxChiSquare = 21.1;  // 3 degrees of freedom, 99.99 %
 
-double square(double value) { return value * value; }
+double variance_of(double sigma) { return sigma * sigma; }
 
 // Adds what images and odometry differ by, if the covariances do not explain it.
 void enlarge_if_contradicted(const Eigen::Vector3d& difference, const Eigen::Matrix3d& visual,
                              double systematic, double least, Eigen::Ref<Eigen::Matrix3d> own) {
   const Eigen::Matrix3d expected =
       own + kVisualFactor * visual +
-      (square(systematic) + square(least)) * Eigen::Matrix3d::Identity();
+      (variance_of(systematic) + variance_of(least)) * Eigen::Matrix3d::Identity();
   if (difference.dot(expected.inverse() * difference) > kMaxChiSquare)
     own += difference * difference.transpose();
 }
 
 geometry::UncertainPose visual_motion(const geometry::UncertainPose& images) {
   core::Vector6d least;
-  least << Eigen::Vector3d::Constant(square(kVisualEdge_m)),
-      Eigen::Vector3d::Constant(square(kVisualEdge_rad));
+  least << Eigen::Vector3d::Constant(variance_of(kVisualEdge_m)),
+      Eigen::Vector3d::Constant(variance_of(kVisualEdge_rad));
   return {images.a_from_b, kVisualFactor * images.covariance + core::Matrix6d(least.asDiagonal())};
 }
 
@@ -45,7 +45,7 @@ void take_height(const geometry::UncertainPose& images, const Eigen::Vector3d& n
   moved.translation += normal * normal.dot(seen.translation - moved.translation);
   const double variance =
       kVisualFactor * normal.dot(images.covariance.topLeftCorner<3, 3>() * normal) +
-      square(kVisual_m);
+      variance_of(kVisual_m);
   motion.covariance.topLeftCorner<3, 3>() += variance * normal * normal.transpose();
 }
 
@@ -59,7 +59,7 @@ geometry::UncertainPose combine_with_images(const OdometryMotion& odometry,
   if (!images) {
     if (normal) {
       motion.covariance.topLeftCorner<3, 3>() +=
-          square(kLiftSpeed_m_s * odometry.duration_s) * *normal * normal->transpose();
+          variance_of(kLiftSpeed_m_s * odometry.duration_s) * *normal * normal->transpose();
     }
     return motion;
   }
