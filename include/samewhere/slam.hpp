@@ -84,7 +84,7 @@ class Slam {
   // thread is in a call.
   Tracked track(const Frame& frame);
 
-  // Events since the last call, oldest first.
+  // Events since the last call, oldest first. The newest 10,000 are kept.
   std::vector<Event> take_events();
   // The map as the newest frame saw it; never nullptr.
   std::shared_ptr<const Map> map() const;

@@ -7,21 +7,13 @@
 
 #include "wall_walk.hpp"
 #include <samewhere/core/channel.hpp>
-#include <samewhere/library/convert.hpp>
+#include <samewhere/library/test_walk.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/pipeline/slam_test_hooks.hpp>
 #include <samewhere/slam.hpp>
 
 namespace samewhere::pipeline {
 namespace {
-
-Image view_of(const cv::Mat& image, PixelFormat format) {
-  return {.data = image.data,
-          .width_px = image.cols,
-          .height_px = image.rows,
-          .format = format,
-          .stride_bytes = image.step};
-}
 
 std::unique_ptr<samewhere::Slam> live_slam(const core::Frame& frame) {
   Calibration calibration{.has_depth = true, .frame_rate_hz = 10.0};
@@ -49,8 +41,8 @@ TEST(LiveSlamInThreads, ASecondThreadReadsSnapshotsAndEvents) {
   });
   for (const core::Frame& frame : frames) {
     slam->track({.stamp_s = frame.stamp_s,
-                 .images = {view_of(frame.images[0], PixelFormat::kBgr8)},
-                 .depth = view_of(*frame.depth_m, PixelFormat::kDepthFloat)});
+                 .images = {library::TestWalk::view_of(frame.images[0], PixelFormat::kBgr8)},
+                 .depth = library::TestWalk::view_of(*frame.depth_m, PixelFormat::kDepthFloat)});
   }
   slam->finish();
   is_over.set(true);

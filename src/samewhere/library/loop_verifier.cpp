@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <opencv2/core/utility.hpp>
 
+#include <samewhere/core/similarity.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/features/orb.hpp>
 #include <samewhere/library/border.hpp>
@@ -21,13 +22,6 @@ namespace {
 // Frames of the match and of the query.
 constexpr core::FrameId kMatch{0};
 constexpr core::FrameId kQuery{1};
-
-double similarity_of(const core::Descriptor& a, const core::Descriptor& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.unit.size(); ++i)
-    sum += static_cast<double>(a.unit[i]) * static_cast<double>(b.unit[i]);
-  return sum;
-}
 
 // Two keyframes without landmarks, joined by odometry, if there is any.
 scene::MapVersion map_of(const features::View& match, const features::View& query,
@@ -97,8 +91,8 @@ LoopVerdict LoopVerifier::verify(const Frame& match, const Frame& query,
         .id = core::CandidateId(0),
         .query = kQuery,
         .match = kMatch,
-        .similarity = similarity_of(parts_->describer->describe(kQuery, now.frame.images[0]),
-                                    parts_->describer->describe(kMatch, old.frame.images[0]))};
+        .similarity = core::ncc(parts_->describer->describe(kQuery, now.frame.images[0]).unit,
+                                parts_->describer->describe(kMatch, old.frame.images[0]).unit)};
     const scene::MapVersion map = map_of(old.view, now.view, odometry);
     const pipeline::KeyframeOf keyframe_of{{kMatch, core::KeyframeId(0)},
                                            {kQuery, core::KeyframeId(1)}};

@@ -43,7 +43,7 @@ void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
   give_up_map();
   map_.has_metric_odometry = config_.odometry.is_used();
   apply(map::start_map(map_, message.view, core::Rigid3{}));
-  reply(answer());
+  reply(newest_answer());
   ask_for_loops(message.image);
   keep_map();
 }
@@ -53,7 +53,7 @@ void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& re
   apply(map::start_map(map_, message.views));
   connect_newest();
   refine_newest();
-  reply(answer());
+  reply(newest_answer());
   ask_for_loops(message.image);
   keep_map();
 }
@@ -68,7 +68,7 @@ void Mapping::take(const AddKeyframe& message, const MappingLink::Reply& reply) 
                                       : message.tracked));
   }
   connect_newest();
-  reply(answer());
+  reply(newest_answer());
   refine_newest();
   ask_for_loops(message.image);
   full_bundles_.begin(map_);
@@ -82,7 +82,7 @@ void Mapping::take(const FindPlace& message, const MappingLink::Reply& reply) {
   loops_.send(message);
   const LoopAnswer answer = loops_.receive();
   note(answer);
-  reply(this->answer(answer.places));
+  reply(newest_answer(answer.places));
 }
 
 void Mapping::take(const SaveFrames& message, const MappingLink::Reply& /*reply*/) {
@@ -216,7 +216,7 @@ void Mapping::add_row(const core::LedgerRow& row) {
   later_verdicts_.push_back(row);
 }
 
-MapAnswer Mapping::answer(std::vector<Place> places) {
+MapAnswer Mapping::newest_answer(std::vector<Place> places) {
   return {.map = map_,
           .places = std::move(places),
           .rows = std::exchange(unsent_rows_, core::Ledger{})};

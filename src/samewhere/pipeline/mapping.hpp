@@ -62,7 +62,7 @@ class Mapping {
   void reject(const scene::LoopEdge& loop, core::Refusal stage, const std::string& reason);
   void accept_again(const scene::LoopEdge& loop);
   void add_row(const core::LedgerRow& row);
-  MapAnswer answer(std::vector<Place> places = {});
+  MapAnswer newest_answer(std::vector<Place> places = {});
 
   void add_frames(const std::vector<core::FramePose>& frames);
   void keep_map();

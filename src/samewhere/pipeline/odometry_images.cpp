@@ -9,8 +9,7 @@ constexpr double kLiftSpeed_m_s = 1.0;  // of what no image has seen
 constexpr double kVisualFactor = 4.0;   // covariances by features alone are too small
 constexpr double kVisual_m = 0.02;
 constexpr double kVisual_rad = 0.002;
-constexpr double kVisualEdge_m =
-    0.03;  // of an edge that is visual alone, without bundle adjustment
+constexpr double kVisualEdge_m = 0.03;  // of a gap: no bundle adjustment follows
 constexpr double kVisualEdge_rad = 0.005;
 constexpr double kMaxChiSquare = 21.1;  // 3 degrees of freedom, 99.99 %
 

@@ -15,7 +15,7 @@
 
 namespace samewhere::verify {
 
-// Sequence verification, for recognition alone: a candidate without a relative pose is pending
+// Sequence verification, for recognition alone: a candidate is pending
 // until consecutive views match, too, and the continuation of a sequence is predicted. Does nothing
 // where needs_sequences() is false. After Milford and Wyeth, SeqSLAM, ICRA 2012
 // (docs/decisions/015).
