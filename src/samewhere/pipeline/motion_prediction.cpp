@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -19,7 +20,7 @@ constexpr double kSpeed_rad_s = 1.0;
 // Between look-alike places. Both the camera and the look-alike pose are in reach of the last one.
 constexpr double kLookAlikes_m = 15.0;
 constexpr double kMaxGap_s = 0.5;  // between the frames that tell the velocity
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Diagonal of the box around the keyframes, on the ground; map units.
 double extent(const scene::MapVersion& map) {

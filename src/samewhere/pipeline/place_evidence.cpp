@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <samewhere/pipeline/place_evidence.hpp>
 
@@ -34,7 +35,7 @@ constexpr double kMaxByLookAlike = 6.0;
 
 double normal(double x, double mean, double sigma) {
   const double z = (x - mean) / sigma;
-  return std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * 3.14159265358979));
+  return std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * std::numbers::pi));
 }
 
 double density_here(double ratio) {

@@ -14,11 +14,14 @@ constexpr double kStep_rad = 0.35;
 constexpr double kRetrieval_m = 0.5;  // between two retrievals
 constexpr std::size_t kViewsOfProvisional = 30;
 constexpr std::size_t kMaxProvisional = 8;
-constexpr int kMaxFailures = 3;     // evaluations of a hypothesis without a pose
-constexpr int kMaxUnmeasured = 15;  // views
-constexpr int kMinVisible = 30;     // landmarks; with fewer the map ends
-constexpr int kMinComparedViews = 2;
+constexpr int kMaxFailures = 3;       // evaluations of a hypothesis without a pose
+constexpr int kMaxUnmeasured = 15;    // views
+constexpr int kMinVisible = 30;       // landmarks; with fewer the map ends
+constexpr int kMinComparedViews = 2;  // to follow another hypothesis
+constexpr int kMinViewsOfOthers = 4;  // to confirm: the first ones may be of a poor pose
 constexpr double kMaxOtherRatio = 0.85;
+constexpr double kLookAlikeRatio =
+    0.4;                             // inliers of a look-alike in all cells; with fewer it is none
 constexpr double kOvertakes = 1.15;  // inliers of another hypothesis, over those of the best
 
 // `metre`: in map units.
@@ -201,6 +204,12 @@ void ProvisionalRelocalization::evaluate_one_other(const Query& query) {
   next->place.is_recognised = is_recognised;
   add_step(*next, query);
   add_view(best(), query);
+  // the pose of the first view is a coarse one
+  const bool are_measured = best().pose && next->pose && next->views.size() > 1 &&
+                            best().pose->track.pose.frame == query.view.frame;
+  if (are_measured)
+    next->differences.add(query.view, {best().views.back(), *best().pose},
+                          {next->views.back(), *next->pose});
   if (next->num_failures >= kMaxFailures) hypotheses_.erase(next);
 }
 
@@ -257,6 +266,7 @@ std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::
   const auto overtakes = [&](const Hypothesis& other) {
     if (!other.pose || !other.place.is_recognised) return false;
     if (num_unmeasured_ >= kMinComparedViews) return true;
+    if (other.differences.swapped().are_told_apart()) return true;
     const ComparedCounts sums = compare(other.views, best().views);
     return sums.num_views >= kMinComparedViews &&
            sums.a.num_inliers > kOvertakes * sums.b.num_inliers;
@@ -265,6 +275,9 @@ std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::
   if (next == hypotheses_.end()) return std::nullopt;
   const core::Rigid3 new_from_old =
       world_from_body(map, next->place) * inverse(world_from_body(map, best().place));
+  PlaceDifferences differences = next->differences.swapped();
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.differences = {};
+  best().differences = std::move(differences);
   std::iter_swap(hypotheses_.begin(), next);
   num_unmeasured_ = 0;
   return new_from_old;
@@ -272,17 +285,23 @@ std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::
 
 double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const {
   double by_lookalike = 0.0;
+  double against = 0.0;  // objects that a look-alike alone explains
   for (const Hypothesis& other : hypotheses_) {
     if (&other == &hypothesis || !other.place.is_recognised) continue;
     const ComparedCounts sums = compare(other.views, hypothesis.views);
-    if (sums.num_views < kMinComparedViews || sums.b.num_inliers == 0) continue;
+    if (sums.num_views < kMinViewsOfOthers || sums.b.num_inliers == 0) continue;
     if (sums.a_in_all.num_inliers < config_.track.weak_inliers * sums.num_views) continue;
-    by_lookalike =
-        std::max(by_lookalike, log_ratio_by_lookalike(hypothesis.evidence.found_ratio(),
-                                                      1.0 * sums.a.num_inliers / sums.b.num_inliers,
-                                                      hypothesis.evidence.num_independent()));
+    const double in_all = 1.0 * sums.a_in_all.num_inliers / sums.b_in_all.num_inliers;
+    const double in_comparable = 1.0 * sums.a.num_inliers / sums.b.num_inliers;
+    if (in_all >= kLookAlikeRatio)
+      by_lookalike = std::max(
+          by_lookalike, log_ratio_by_lookalike(hypothesis.evidence.found_ratio(), in_comparable,
+                                               hypothesis.evidence.num_independent()));
+    const double by_differences = log_ratio_by_differences(other.differences);
+    by_lookalike = std::max(by_lookalike, by_differences);
+    against = std::min(against, by_differences);
   }
-  return hypothesis.evidence.log_likelihood_ratio() + log_ratio_by_motion_ + by_lookalike;
+  return hypothesis.evidence.log_likelihood_ratio() + log_ratio_by_motion_ + by_lookalike + against;
 }
 
 bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {
@@ -290,8 +309,9 @@ bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {
   const CompetingLimits limits{kMaxOtherRatio, config_.track.weak_inliers};
   return std::ranges::none_of(hypotheses_, [&](const Hypothesis& other) {
     if (&other == &hypothesis) return false;
-    return other.views.empty() ? other.place.is_recognised
-                               : is_competing(other.views, hypothesis.views, limits);
+    if (other.place.is_recognised && std::ssize(other.views) < kMinViewsOfOthers) return true;
+    if (other.differences.are_told_apart()) return false;
+    return !other.views.empty() && is_competing(other.views, hypothesis.views, limits);
   });
 }
 

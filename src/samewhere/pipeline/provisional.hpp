@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <samewhere/pipeline/config.hpp>
+#include <samewhere/pipeline/place_differences.hpp>
 #include <samewhere/pipeline/place_evidence.hpp>
 #include <samewhere/pipeline/pose_hypotheses.hpp>
 #include <samewhere/pipeline/view_evidence.hpp>
@@ -50,6 +51,7 @@ class ProvisionalRelocalization {
     core::Rigid3 since_step;
     double since_step_m = 0.0;
     PlaceEvidence evidence;
+    PlaceDifferences differences;  // of the best hypothesis, from this one
     std::set<core::LandmarkId> seen;
     int num_failures = 0;  // evaluations without a pose, in a row
   };

@@ -129,6 +129,17 @@ ViewEvidence measure_view(const features::View& view, const scene::MapVersion& m
   return of_view;
 }
 
+InliersByCell inliers_by_cell(const features::View& view, const RelocalizedPose& pose) {
+  InliersByCell cells;
+  for (const features::Match& match : pose.track.matches) {
+    const auto feature = static_cast<std::size_t>(match.second);
+    const Eigen::Vector2d pixel = view.features->undistorted_px[feature].cast<double>();
+    cells[cell_of(pixel, view.image_size_px)].push_back(
+        pose.local_map.landmarks[static_cast<std::size_t>(match.first)]);
+  }
+  return cells;
+}
+
 bool are_comparable(const Counts& a, const Counts& b) {
   return std::min(a.num_visible, b.num_visible) >=
          kMinComparableRatio * std::max(a.num_visible, b.num_visible);

@@ -59,6 +59,11 @@ ViewEvidence measure_view(const features::View& view, const scene::MapVersion& m
                           const Place& place, const RelocalizedPose* pose,
                           const map::Config& config);
 
+// The inlier landmarks of a pose, by the cell of the view that shows them.
+using InliersByCell = std::array<std::vector<core::LandmarkId>,
+                                 std::size_t{ViewEvidence::kColumns} * ViewEvidence::kRows>;
+InliersByCell inliers_by_cell(const features::View& view, const RelocalizedPose& pose);
+
 // Whether the map shows similar numbers of landmarks at both.
 bool are_comparable(const Counts& a, const Counts& b);
 
