@@ -8,6 +8,7 @@ include(CMakePackageConfigHelpers)
 
 file(WRITE ${CMAKE_BINARY_DIR}/package/empty.cpp "")
 add_library(samewhere_shared SHARED ${CMAKE_BINARY_DIR}/package/empty.cpp)
+add_dependencies(samewhere_shared samewhere-video)  # it loads the plugin that lies beside it
 # as a whole: nothing refers to the classes from inside
 target_link_libraries(samewhere_shared PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,samewhere_library>)
 target_link_libraries(samewhere_shared INTERFACE Eigen3::Eigen)
@@ -22,7 +23,8 @@ set_target_properties(samewhere_shared PROPERTIES
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/samewhere.map)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/samewhere)
-install(TARGETS samewhere_shared EXPORT samewhere LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+install(TARGETS samewhere_shared EXPORT samewhere
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/samewhere DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(EXPORT samewhere NAMESPACE samewhere:: FILE samewhereTargets.cmake DESTINATION ${package_folder} COMPONENT development)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/samewhereConfig.cmake.in ${CMAKE_BINARY_DIR}/package/samewhereConfig.cmake
@@ -36,4 +38,5 @@ install(FILES ${CMAKE_BINARY_DIR}/package/samewhere.pc DESTINATION ${CMAKE_INSTA
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/models ${CMAKE_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/samewhere COMPONENT library)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/samewhere COMPONENT development)
 install(TARGETS samewhere RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-install(TARGETS samewhere-video LIBRARY DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+# found relative to the program and to the library: src/samewhere/input/video_plugin.cpp
+install(TARGETS samewhere-video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/samewhere COMPONENT library)

@@ -1,24 +1,13 @@
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file_kind.hpp>
 #include <samewhere/core/model_file.hpp>
+#include <samewhere/core/own_file.hpp>
 
 namespace samewhere::core {
 namespace {
-
-// The shared library or the program that holds this function; empty: not known.
-std::filesystem::path own_file() {
-  static const int anchor = 0;
-  Dl_info info{};
-  std::error_code error;
-  const bool is_known = dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr;
-  // a program is named as it was called
-  const bool is_library = is_known && std::filesystem::path(info.dli_fname).is_absolute();
-  return std::filesystem::canonical(is_library ? info.dli_fname : "/proc/self/exe", error);
-}
 
 // The models that come with the program: of an installed one, which may have been moved, those
 // under its prefix (bin/, lib/ or lib/x86_64-linux-gnu/); else those of the source tree.

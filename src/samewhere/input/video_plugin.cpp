@@ -3,6 +3,7 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file_kind.hpp>
+#include <samewhere/core/own_file.hpp>
 #include <samewhere/input/video_plugin.hpp>
 
 namespace samewhere::input {
@@ -27,7 +28,17 @@ Function* load(const path& plugin, const char* symbol) {
 }  // namespace
 
 path video_plugin_path() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "samewhere-video.so";
+  const char* const name = "samewhere-video.so";
+  const path folder = core::own_file().parent_path();
+  if (folder.empty()) return name;
+  // where it is built; of libsamewhere.so in the library folder; of a program in bin/
+  for (const path& place :
+       {folder, folder / "samewhere", folder / ".." / SAMEWHERE_PLUGIN_FOLDER}) {
+    std::error_code error;
+    const path plugin = std::filesystem::weakly_canonical(place / name, error);
+    if (!error && std::filesystem::exists(plugin, error)) return plugin;
+  }
+  return folder / name;
 }
 
 std::unique_ptr<VideoDecoder> open_decoder(const path& video, bool is_camera, const path& plugin) {

@@ -13,7 +13,8 @@ namespace samewhere::input {
 // The plugin that reads videos, cameras and the rarer formats of pictures, loaded when the first of
 // them is opened.
 
-// Where it lies: beside the running program.
+// Where it is: beside the program or library that holds this code, or under its prefix in
+// lib/samewhere (Debian: lib/x86_64-linux-gnu/samewhere).
 std::filesystem::path video_plugin_path();
 
 // Throws InputError if the plugin cannot be loaded, or if `video` is no video or camera that it
