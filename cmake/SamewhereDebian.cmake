@@ -38,8 +38,10 @@ set(same_version "samewhere (= ${PROJECT_VERSION})")
 
 set(CPACK_DEBIAN_MAIN_PACKAGE_NAME samewhere)
 set(CPACK_DEBIAN_MAIN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_MAIN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_MAIN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
+# CPack's own shlibs would name the plugin, too
+file(WRITE ${CMAKE_BINARY_DIR}/package/shlibs "libsamewhere ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${same_version}\n")
+file(WRITE ${CMAKE_BINARY_DIR}/package/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_MAIN_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/package/shlibs ${CMAKE_BINARY_DIR}/package/triggers)
 set(CPACK_DEBIAN_MAIN_DESCRIPTION "visual SLAM that rejects false loop closures
 Simultaneous localization and mapping with a depth, stereo or single camera,
 for buildings with repeated corridors and floors. Loop closures that perceptual
@@ -52,8 +54,9 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${same_version}, libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "visual SLAM that rejects false loop closures: development files
-Headers, examples and the package files of CMake and pkg-config for libsamewhere:
-live SLAM, loop closures for other odometry, verification of one loop.")
+Headers, examples and the package files of CMake and pkg-config for
+libsamewhere: live SLAM, loop closures for other odometry, verification of
+one loop.")
 
 set(documented samewhere=library libsamewhere-dev=development)
 if(SAMEWHERE_PYTHON)
@@ -72,11 +75,18 @@ The classes of libsamewhere for numpy arrays, evaluation of trajectories and
 loops, and figures from results folders.")
 endif()
 
+# a changelog of one entry, as Debian's policy has it; what changed is in CHANGELOG.md
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(WRITE ${CMAKE_BINARY_DIR}/package/changelog
+     "samewhere (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * Version ${PROJECT_VERSION}.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${date}\n")
+execute_process(COMMAND gzip -9nf ${CMAKE_BINARY_DIR}/package/changelog COMMAND_ERROR_IS_FATAL ANY)
+
 foreach(pair IN LISTS documented)
   string(REPLACE "=" ";" pair ${pair})
   list(GET pair 0 package)
   list(GET pair 1 component)
-  install(FILES ${CMAKE_CURRENT_LIST_DIR}/debian/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/debian/copyright ${CMAKE_BINARY_DIR}/package/changelog.gz
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
 endforeach()
 
 include(CPack)
