@@ -29,8 +29,11 @@ constexpr double kLeavesPerMetre = 0.05;
 constexpr double kNewRatio = 0.2;
 // Of places, around the mean.
 constexpr double kPlaceSigma = 0.07;
-// With fewer inliers a place is no look-alike: it shares some objects.
+// With fewer inliers a place is no look-alike: it shares some objects. Those leave the view; what
+// explains a part of it for longer is a look-alike that differs more.
 constexpr double kLookAlikeRatio = 0.4;
+constexpr double kDifferentLookAlikeRatio = 0.2;
+constexpr int kViewsOfDifferent = 8;
 constexpr double kMaxByLookAlike = 6.0;
 
 double normal(double x, double mean, double sigma) {
@@ -84,8 +87,13 @@ void PlaceEvidence::add(const PlaceView& view) {
   weight_ = kRemembers * weight_ + weight;
 }
 
+bool is_lookalike(double other_ratio, int num_views) {
+  return other_ratio >=
+         (num_views < kViewsOfDifferent ? kLookAlikeRatio : kDifferentLookAlikeRatio);
+}
+
 double log_ratio_by_lookalike(double found_ratio, double other_ratio, double num_views) {
-  if (num_views <= 0.0 || other_ratio < kLookAlikeRatio) return 0.0;
+  if (num_views <= 0.0) return 0.0;
   const double sigma = std::hypot(kHereSigma / std::sqrt(num_views), kPlaceSigma);
   const double here = normal(std::min(found_ratio, kHere), kHere, sigma);
   const double expected = other_ratio * kHere;

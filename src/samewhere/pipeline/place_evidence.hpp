@@ -45,6 +45,10 @@ class PlaceEvidence {
   double weight_ = 0.0;
 };
 
+// Whether another place of the map is a look-alike, or only shares some objects: by its inliers per
+// inlier of this place, over so many views after steps.
+bool is_lookalike(double other_ratio, int num_views);
+
 // Evidence of a look-alike place in the map that explains the views clearly worse. Look-alikes of
 // one building differ by about as much: one that is not in the map would leave the winner with
 // fewer inliers, too. `found_ratio`: of the winner, over what mapping found; `other_ratio`: inliers

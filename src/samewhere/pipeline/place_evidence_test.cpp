@@ -48,7 +48,13 @@ TEST(PlaceEvidence, AMappedLookAlikeShowsHowMuchLookAlikesDiffer) {
   EXPECT_LT(log_ratio_by_lookalike(1.05, 0.95, 10.0), 1.5) << "nearly the same";
   EXPECT_LT(log_ratio_by_lookalike(0.65, 0.7, 10.0), 0.0) << "the winner may be one, too";
   EXPECT_EQ(log_ratio_by_lookalike(1.05, 0.6, 0.0), 0.0) << "no view";
-  EXPECT_EQ(log_ratio_by_lookalike(1.05, 0.2, 10.0), 0.0) << "no look-alike: it shares a door";
+}
+
+TEST(PlaceEvidence, ALookAlikeExplainsMuchOrForLong) {
+  EXPECT_TRUE(is_lookalike(0.5, 4));
+  EXPECT_FALSE(is_lookalike(0.25, 4)) << "it may share a door";
+  EXPECT_TRUE(is_lookalike(0.25, 10));
+  EXPECT_FALSE(is_lookalike(0.1, 30));
 }
 
 }  // namespace

@@ -20,8 +20,6 @@ constexpr int kMinVisible = 30;       // landmarks; with fewer the map ends
 constexpr int kMinComparedViews = 2;  // to follow another hypothesis
 constexpr int kMinViewsOfOthers = 4;  // to confirm: the first ones may be of a poor pose
 constexpr double kMaxOtherRatio = 0.85;
-constexpr double kLookAlikeRatio =
-    0.4;                             // inliers of a look-alike in all cells; with fewer it is none
 constexpr double kOvertakes = 1.15;  // inliers of another hypothesis, over those of the best
 
 // `metre`: in map units.
@@ -293,7 +291,7 @@ double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const 
     if (sums.a_in_all.num_inliers < config_.track.weak_inliers * sums.num_views) continue;
     const double in_all = 1.0 * sums.a_in_all.num_inliers / sums.b_in_all.num_inliers;
     const double in_comparable = 1.0 * sums.a.num_inliers / sums.b.num_inliers;
-    if (in_all >= kLookAlikeRatio)
+    if (is_lookalike(std::min(in_all, in_comparable), sums.num_views))
       by_lookalike = std::max(
           by_lookalike, log_ratio_by_lookalike(hypothesis.evidence.found_ratio(), in_comparable,
                                                hypothesis.evidence.num_independent()));
