@@ -8,7 +8,7 @@ namespace samewhere::pipeline {
 namespace {
 
 // Of a cell: with fewer landmarks nothing is said.
-constexpr int kMinVisible = 10;
+constexpr int kMinInCell = 10;
 // Inliers per visible landmark of an object that is there, and of one that is not.
 constexpr double kFoundRatio = 0.5;
 constexpr double kNotFoundRatio = 0.25;
@@ -38,20 +38,21 @@ bool is_missing(const Counts& counts) {
 
 }  // namespace
 
+// The share of the landmarks that no earlier view has counted.
+double PlaceDifferences::count(const std::vector<core::LandmarkId>& inliers) {
+  int num_new = 0;
+  for (const core::LandmarkId id : inliers) num_new += counted_.insert(id).second ? 1 : 0;
+  return static_cast<double>(num_new) / static_cast<double>(inliers.size());
+}
+
 void PlaceDifferences::add(const features::View& view, const SeenPlace& here,
                            const SeenPlace& there) {
   const InliersByCell of_here = inliers_by_cell(view, here.pose);
   const InliersByCell of_there = inliers_by_cell(view, there.pose);
-  // the share of the landmarks that no earlier view has counted
-  const auto count = [&](const std::vector<core::LandmarkId>& inliers) {
-    int num_new = 0;
-    for (const core::LandmarkId id : inliers) num_new += counted_.insert(id).second ? 1 : 0;
-    return static_cast<double>(num_new) / static_cast<double>(inliers.size());
-  };
   for (std::size_t i = 0; i < of_here.size(); ++i) {
     const Counts& a = here.evidence.cells[i];
     const Counts& b = there.evidence.cells[i];
-    if (std::min(a.num_visible, b.num_visible) < kMinVisible) continue;
+    if (std::min(a.num_visible, b.num_visible) < kMinInCell) continue;
     if (is_found(a) && is_found(b)) both_ += count(of_here[i]);
     if (is_found(a) && is_missing(b)) only_here_ += count(of_here[i]);
     if (is_missing(a) && is_found(b)) only_there_ += count(of_there[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <vector>
 
 #include <samewhere/pipeline/view_evidence.hpp>
 
@@ -38,6 +39,8 @@ class PlaceDifferences {
   bool are_told_apart() const;
 
  private:
+  double count(const std::vector<core::LandmarkId>& inliers);
+
   double only_here_ = 0.0;
   double only_there_ = 0.0;
   double both_ = 0.0;

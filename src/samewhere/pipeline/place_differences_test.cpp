@@ -10,9 +10,9 @@ namespace samewhere::pipeline {
 namespace {
 
 constexpr double kWall_m = 5.0;
-const core::KeyframeId kHere(0);
-const core::KeyframeId kThere(1);
-const core::Rigid3 kFar{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
+const core::KeyframeId kFirstPlace(0);
+const core::KeyframeId kSecondPlace(1);
+const core::Rigid3 kElsewhere{Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}};
 
 // A wall in front of the camera, with some 30 points in each cell of the image.
 features::TestWorld wall(std::uint64_t seed) {
@@ -46,10 +46,10 @@ class PlaceDifferencesTest : public testing::Test {
            const features::TestWorld& there) {
     scene::MapVersion map;
     map = apply(map, map::start_map(map, features::test_view(here, 0, {}), {}));
-    map = apply(map, map::start_map(map, features::test_view(there, 1, {}), kFar));
+    map = apply(map, map::start_map(map, features::test_view(there, 1, {}), kElsewhere));
     const features::View view = features::test_view(seen, 10, {});
-    const RelocalizedPose at_here = pose_at(map, view, kHere);
-    const RelocalizedPose at_there = pose_at(map, view, kThere);
+    const RelocalizedPose at_here = pose_at(map, view, kFirstPlace);
+    const RelocalizedPose at_there = pose_at(map, view, kSecondPlace);
     const ViewEvidence of_here = measure_view(view, map, place_of(at_here), &at_here, config_.map);
     const ViewEvidence of_there =
         measure_view(view, map, place_of(at_there), &at_there, config_.map);
