@@ -65,10 +65,9 @@ PlaceDifferences PlaceDifferences::swapped() const {
   return other;
 }
 
-bool PlaceDifferences::are_told_apart() const {
-  return is_lookalike() && only_here_ >= kMinObjects &&
-         only_here_ >= kMinShare * (only_here_ + both_) &&
-         only_there_ <= kMaxOtherShare * only_here_;
+bool PlaceDifferences::is_shown(double own, double others) const {
+  return is_lookalike() && own >= kMinObjects && own >= kMinShare * (own + both_) &&
+         others <= kMaxOtherShare * own;
 }
 
 double log_ratio_by_differences(const PlaceDifferences& differences) {

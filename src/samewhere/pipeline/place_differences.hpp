@@ -34,12 +34,14 @@ class PlaceDifferences {
   // it only shares some objects, and the differences say nothing.
   bool is_lookalike() const { return both_ >= std::max(only_here_, only_there_); }
 
-  // Whether the view shows this place and not the other: it finds several objects of this place
-  // alone, and almost none of the other alone.
-  bool are_told_apart() const;
+  // Whether the views show this place and not the other, or the reverse: they find several objects
+  // of it alone, and almost none of the other alone.
+  bool is_here() const { return is_shown(only_here_, only_there_); }
+  bool is_there() const { return is_shown(only_there_, only_here_); }
 
  private:
   double count(const std::vector<core::LandmarkId>& inliers);
+  bool is_shown(double own, double others) const;
 
   double only_here_ = 0.0;
   double only_there_ = 0.0;

@@ -75,7 +75,7 @@ TEST_F(PlaceDifferencesTest, EqualPlacesShowTheSameObjects) {
   EXPECT_GT(differences_.both(), 20.0);
   EXPECT_EQ(differences_.only_here(), 0.0);
   EXPECT_EQ(differences_.only_there(), 0.0);
-  EXPECT_FALSE(differences_.are_told_apart());
+  EXPECT_FALSE(differences_.is_here());
   EXPECT_EQ(log_ratio_by_differences(differences_), 0.0);
 }
 
@@ -83,8 +83,9 @@ TEST_F(PlaceDifferencesTest, AnObjectOfOnePlaceTellsThemApart) {
   add(here_, here_, with_picture(here_, -2.4, 0.0, 4));
   EXPECT_GE(differences_.only_here(), 4.0);
   EXPECT_EQ(differences_.only_there(), 0.0);
-  EXPECT_TRUE(differences_.are_told_apart());
-  EXPECT_FALSE(differences_.swapped().are_told_apart()) << "the camera is here";
+  EXPECT_TRUE(differences_.is_here());
+  EXPECT_FALSE(differences_.is_there()) << "the camera is here";
+  EXPECT_TRUE(differences_.swapped().is_there());
   EXPECT_GT(log_ratio_by_differences(differences_), 2.0);
 }
 
@@ -102,8 +103,8 @@ TEST_F(PlaceDifferencesTest, AThirdPlaceDiffersFromBoth) {
   add(third, here_, there);
   EXPECT_GE(differences_.only_here(), 3.0);
   EXPECT_GE(differences_.only_there(), 3.0);
-  EXPECT_FALSE(differences_.are_told_apart());
-  EXPECT_FALSE(differences_.swapped().are_told_apart());
+  EXPECT_FALSE(differences_.is_here());
+  EXPECT_FALSE(differences_.is_there());
   EXPECT_LT(log_ratio_by_differences(differences_), 0.0);
 }
 

@@ -264,7 +264,7 @@ std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::
   const auto overtakes = [&](const Hypothesis& other) {
     if (!other.pose || !other.place.is_recognised) return false;
     if (num_unmeasured_ >= kMinComparedViews) return true;
-    if (other.differences.swapped().are_told_apart()) return true;
+    if (other.differences.is_there()) return true;
     const ComparedCounts sums = compare(other.views, best().views);
     return sums.num_views >= kMinComparedViews &&
            sums.a.num_inliers > kOvertakes * sums.b.num_inliers;
@@ -308,7 +308,7 @@ bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {
   return std::ranges::none_of(hypotheses_, [&](const Hypothesis& other) {
     if (&other == &hypothesis) return false;
     if (other.place.is_recognised && std::ssize(other.views) < kMinViewsOfOthers) return true;
-    if (other.differences.are_told_apart()) return false;
+    if (other.differences.is_here()) return false;
     return !other.views.empty() && is_competing(other.views, hypothesis.views, limits);
   });
 }
