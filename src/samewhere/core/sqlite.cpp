@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <samewhere/scene/sqlite.hpp>
+#include <samewhere/core/sqlite.hpp>
 
-namespace samewhere::scene {
+namespace samewhere::core {
 namespace {
 
 constexpr int kBusyTimeout_ms = 5000;
@@ -99,7 +99,7 @@ void Database::fail(int code) const {
   const int kind = code & 0xff;
   if (mode_ == OpenMode::kRead && (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN))
     throw NeedsRepair(text);
-  throw core::InputError(text);
+  throw InputError(text);
 }
 
 void Database::execute(const std::string& sql) {
@@ -116,7 +116,7 @@ Statement Database::prepare(const std::string& sql) {
 
 std::int64_t Database::number(const std::string& sql) {
   Statement statement = prepare(sql);
-  if (!statement.step()) throw core::InputError(path_.string() + ": is damaged: a number is gone");
+  if (!statement.step()) throw InputError(path_.string() + ": is damaged: a number is gone");
   return statement.number(0);
 }
 
@@ -125,8 +125,8 @@ void Database::check_pages() {
   const std::string_view found = check.step() ? check.bytes(0) : "";
   if (found == "ok") return;
   // some of its sentences have several lines
-  throw core::InputError(fmt::format("{}: is damaged: {}", path_.string(),
-                                     printable(found.substr(found.rfind('\n') + 1))));
+  throw InputError(fmt::format("{}: is damaged: {}", path_.string(),
+                               printable(found.substr(found.rfind('\n') + 1))));
 }
 
 std::string Database::file_bytes() {
@@ -163,10 +163,10 @@ bool Statement::step() {
   return false;
 }
 
-Kind Statement::kind(int column) const {
+ColumnKind Statement::kind(int column) const {
   const int type = sqlite3_column_type(statement_.get(), column);
-  if (type == SQLITE_INTEGER) return Kind::kNumber;
-  return type == SQLITE_BLOB ? Kind::kBytes : Kind::kOther;
+  if (type == SQLITE_INTEGER) return ColumnKind::kNumber;
+  return type == SQLITE_BLOB ? ColumnKind::kBytes : ColumnKind::kOther;
 }
 
 std::int64_t Statement::number(int column) const {
@@ -183,7 +183,7 @@ Transaction::~Transaction() {
   if (!is_open_) return;
   try {
     database_.execute("ROLLBACK");
-  } catch (const core::InputError&) {
+  } catch (const InputError&) {
     // the failure that brought us here has rolled back already
   }
 }
@@ -193,4 +193,4 @@ void Transaction::commit() {
   is_open_ = false;
 }
 
-}  // namespace samewhere::scene
+}  // namespace samewhere::core

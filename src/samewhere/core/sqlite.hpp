@@ -11,12 +11,12 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace samewhere::scene {
+namespace samewhere::core {
 
 enum class OpenMode { kRead, kWrite, kCreate };
 
 // What a row's column holds.
-enum class Kind { kNumber, kBytes, kOther };
+enum class ColumnKind { kNumber, kBytes, kOther };
 
 // The largest value of a row, bytes: 50 times what a view with the most features (20,000) takes. A
 // file that says more is forged.
@@ -24,16 +24,16 @@ inline constexpr int kMaxValue_bytes = 64 << 20;
 
 // A file that cannot be opened to be read alone: a program was killed while it wrote, and what it
 // left is to be put in order first.
-class NeedsRepair : public core::InputError {
+class NeedsRepair : public InputError {
  public:
-  using core::InputError::InputError;
+  using InputError::InputError;
 };
 
 // The disk is full.
-class NoSpace : public core::InputError {
+class NoSpace : public InputError {
  public:
   explicit NoSpace(const std::filesystem::path& path)
-      : core::InputError(path.string() + ": cannot be written: no space left on the disk") {}
+      : InputError(path.string() + ": cannot be written: no space left on the disk") {}
 };
 
 class Statement;
@@ -85,7 +85,7 @@ class Statement {
   bool step();
 
   // Columns of the row count from 0. Bytes live until the next step().
-  Kind kind(int column) const;
+  ColumnKind kind(int column) const;
   std::int64_t number(int column) const;
   std::string_view bytes(int column) const;
 
@@ -113,4 +113,4 @@ class Transaction {
   bool is_open_ = true;
 };
 
-}  // namespace samewhere::scene
+}  // namespace samewhere::core

@@ -95,7 +95,7 @@ MapFile::Content::Content(const std::filesystem::path& path, const MapHeader& he
   state_.num_settings = header.size();
 }
 
-MapFile::Content::Content(const std::filesystem::path& path, OpenMode mode)
+MapFile::Content::Content(const std::filesystem::path& path, core::OpenMode mode)
     : file_(RowFile::open(path, kMapKind, mode)) {
   const MapState state = read_state();
   file_.read_list(kHeader, state.num_settings, [&](const RowFile::Row& row) {
@@ -181,7 +181,7 @@ std::optional<std::string> MapFile::Content::thumbnail(core::FrameId frame) {
 }
 
 StoredMap MapFile::Content::load() {
-  Transaction moment = file_.transaction();  // another program may write meanwhile
+  core::Transaction moment = file_.transaction();  // another program may write meanwhile
   state_ = read_state();
   read_rigs();
   StoredMap stored;
@@ -314,7 +314,7 @@ void MapFile::Content::commit(const MapVersion& after, const MapExtras& extras) 
                 "a map file is given a later version of its map");
   try {
     write(after, extras);
-  } catch (const NoSpace&) {
+  } catch (const core::NoSpace&) {
     if (!file_.shrink_log()) throw;
     write(after, extras);
   }
@@ -325,7 +325,7 @@ void MapFile::Content::write(const MapVersion& after, const MapExtras& extras) {
   rigs_.resize(state_.num_rigs);  // without those of a commit that failed
   MapState state = state_;
   file_.begin_writing();
-  Transaction transaction = file_.transaction();
+  core::Transaction transaction = file_.transaction();
   require_unchanged();
   write_keyframes(after, state);
   write_landmarks(after, state);

@@ -19,7 +19,7 @@ class MapFile::Content {
   // Of a new file.
   Content(const std::filesystem::path& path, const MapHeader& header);
   // Of one that is there.
-  Content(const std::filesystem::path& path, OpenMode mode);
+  Content(const std::filesystem::path& path, core::OpenMode mode);
 
   const MapHeader& header() const { return header_; }
   const std::filesystem::path& path() const { return file_.path(); }

@@ -15,7 +15,8 @@ MapFile MapFile::create(const std::filesystem::path& path, const MapHeader& head
 }
 
 MapFile MapFile::open(const std::filesystem::path& path, MapAccess access) {
-  const OpenMode mode = access == MapAccess::kRead ? OpenMode::kRead : OpenMode::kWrite;
+  const core::OpenMode mode =
+      access == MapAccess::kRead ? core::OpenMode::kRead : core::OpenMode::kWrite;
   return MapFile(std::make_unique<Content>(path, mode));
 }
 

@@ -41,8 +41,8 @@ std::string table_sql(const char* table) {
       table);
 }
 
-void make_tables(Database& database, const FileKind& kind) {
-  Transaction transaction(database);
+void make_tables(core::Database& database, const FileKind& kind) {
+  core::Transaction transaction(database);
   for (const char* table : kind.tables) database.execute(table_sql(table));
   database.execute(fmt::format("PRAGMA application_id={}", kind.magic));
   database.execute(fmt::format("PRAGMA user_version={}", kind.version));
@@ -78,13 +78,13 @@ void check_is_file(const std::filesystem::path& path, const FileKind& kind) {
 }
 
 // The kind with the version of the file: `kind` or the one before.
-const FileKind& kind_of(Database& database, const FileKind& kind, OpenMode mode) {
+const FileKind& kind_of(core::Database& database, const FileKind& kind, core::OpenMode mode) {
   if (database.number("PRAGMA application_id") != kind.magic)
     refuse(database.path(), fmt::format("is no {} but another SQLite file", kind.name));
   const std::int64_t version = database.number("PRAGMA user_version");
   if (version == kind.version) return kind;
   const bool is_before = kind.before != nullptr && version == kind.before->version;
-  if (is_before && mode == OpenMode::kRead) return *kind.before;
+  if (is_before && mode == core::OpenMode::kRead) return *kind.before;
   const std::string found = fmt::format("is a {} of version {}", kind.name, version);
   if (is_before)
     refuse(database.path(), fmt::format("{}, which is read only; expected version {}: {}", found,
@@ -96,10 +96,10 @@ const FileKind& kind_of(Database& database, const FileKind& kind, OpenMode mode)
 }
 
 // Nothing but the tables, each as it was made: no trigger, view, index or column beside them.
-void check_schema(Database& database, const FileKind& kind) {
+void check_schema(core::Database& database, const FileKind& kind) {
   std::set<std::string> expected;
   for (const char* table : kind.tables) expected.insert(table_sql(table));
-  Statement select = database.prepare("SELECT type, name, sql FROM sqlite_schema");
+  core::Statement select = database.prepare("SELECT type, name, sql FROM sqlite_schema");
   while (select.step()) {
     if (expected.erase(std::string(select.bytes(2))) == 1) continue;
     refuse(database.path(), fmt::format("is damaged: it has a {} {} that no {} has",
@@ -134,20 +134,20 @@ void copy_files(const std::filesystem::path& from, const std::filesystem::path& 
 
 // What was begun is taken back, what was committed is written into the file itself.
 void put_in_order(const std::filesystem::path& path, const std::filesystem::path& location) {
-  Database database(path, location, OpenMode::kWrite);
+  core::Database database(path, location, core::OpenMode::kWrite);
   database.number("PRAGMA application_id");  // takes back
   database.execute("PRAGMA journal_mode=DELETE");
 }
 
 }  // namespace
 
-RowFile::RowFile(std::unique_ptr<Database> database, std::unique_ptr<WriterLock> lock)
+RowFile::RowFile(std::unique_ptr<core::Database> database, std::unique_ptr<WriterLock> lock)
     : lock_(std::move(lock)), database_(std::move(database)) {
   if (lock_) database_->execute("PRAGMA synchronous=NORMAL");
 }
 
 RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind, const Fill& fill) {
-  RowFile draft(std::make_unique<Database>(Database::in_memory(path)), nullptr);
+  RowFile draft(std::make_unique<core::Database>(core::Database::in_memory(path)), nullptr);
   make_tables(*draft.database_, kind);
   fill(draft);
   if (!core::write_new_file(path, draft.database_->file_bytes()))
@@ -155,7 +155,7 @@ RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind,
   try {
     auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
     remove_logs(path);
-    RowFile file(std::make_unique<Database>(path, OpenMode::kWrite), std::move(lock));
+    RowFile file(std::make_unique<core::Database>(path, core::OpenMode::kWrite), std::move(lock));
     file.version_ = kind.version;
     file.begin_writing();
     return file;
@@ -170,13 +170,13 @@ RowFile RowFile::create(const std::filesystem::path& path, const FileKind& kind,
 // A program may have been killed while it wrote.
 RowFile RowFile::open_to_read(const std::filesystem::path& path) {
   const auto opened = [&](const std::filesystem::path& location) {
-    auto database = std::make_unique<Database>(path, location, OpenMode::kRead);
+    auto database = std::make_unique<core::Database>(path, location, core::OpenMode::kRead);
     database->number("PRAGMA application_id");  // the first look at the file
     return RowFile(std::move(database), nullptr);
   };
   try {
     return opened(path);
-  } catch (const NeedsRepair&) {
+  } catch (const core::NeedsRepair&) {
     if (WriterLock::is_held(path)) throw;
   }
   try {
@@ -195,12 +195,13 @@ RowFile RowFile::open_to_read(const std::filesystem::path& path) {
   return opened(path);
 }
 
-RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode) {
+RowFile RowFile::open(const std::filesystem::path& path, const FileKind& kind,
+                      core::OpenMode mode) {
   check_is_file(path, kind);
   const auto opened = [&] {
-    if (mode == OpenMode::kRead) return open_to_read(path);
+    if (mode == core::OpenMode::kRead) return open_to_read(path);
     auto lock = std::make_unique<WriterLock>(path, WriterLock::File::kIsThere);
-    return RowFile(std::make_unique<Database>(path, mode), std::move(lock));
+    return RowFile(std::make_unique<core::Database>(path, mode), std::move(lock));
   };
   RowFile file = opened();
   const FileKind& found = kind_of(*file.database_, kind, mode);
@@ -238,7 +239,7 @@ bool RowFile::shrink_log() {
   return has_log_ && database_->number("PRAGMA wal_checkpoint(TRUNCATE)") == kDone;
 }
 
-void RowFile::commit(Transaction& transaction) {
+void RowFile::commit(core::Transaction& transaction) {
   if (lock_) {
     const std::int64_t num_bytes =
         database_->number("PRAGMA page_count") * database_->number("PRAGMA page_size");
@@ -247,14 +248,14 @@ void RowFile::commit(Transaction& transaction) {
   transaction.commit();
 }
 
-Statement& RowFile::statement(const std::string& sql) {
+core::Statement& RowFile::statement(const std::string& sql) {
   const auto known = statements_.find(sql);
   if (known != statements_.end()) return known->second;
   return statements_.emplace(sql, database_->prepare(sql)).first->second;
 }
 
 void RowFile::put(const char* table, std::int64_t number, std::string_view bytes) {
-  Statement& insert =
+  core::Statement& insert =
       statement(fmt::format("INSERT OR REPLACE INTO {} VALUES (?1, ?2, ?3)", table));
   insert.bind(1, number);
   insert.bind_bytes(2, bytes);
@@ -263,7 +264,7 @@ void RowFile::put(const char* table, std::int64_t number, std::string_view bytes
 }
 
 void RowFile::remove_from(const char* table, std::int64_t first_number) {
-  Statement& remove = statement(fmt::format("DELETE FROM {} WHERE number >= ?1", table));
+  core::Statement& remove = statement(fmt::format("DELETE FROM {} WHERE number >= ?1", table));
   remove.bind(1, first_number);
   remove.step();
 }
@@ -272,9 +273,9 @@ namespace {
 
 // The bytes of a row (number, bytes, checksum) that `select` stands on; `name` is how a message
 // calls it.
-std::string_view checked_bytes(const Statement& select, const char* table,
+std::string_view checked_bytes(const core::Statement& select, const char* table,
                                const std::string& name) {
-  if (select.kind(1) != Kind::kBytes || select.kind(2) != Kind::kNumber)
+  if (select.kind(1) != core::ColumnKind::kBytes || select.kind(2) != core::ColumnKind::kNumber)
     throw core::InputError(name + " is damaged: it holds values of another type");
   const std::string_view bytes = select.bytes(1);
   if (select.number(2) != row_checksum(table, select.number(0), bytes))
@@ -289,7 +290,7 @@ std::string RowFile::name_of(const char* table, std::int64_t number) const {
 }
 
 std::optional<std::string> RowFile::find(const char* table, std::int64_t number) {
-  Statement select = database_->prepare(
+  core::Statement select = database_->prepare(
       fmt::format("SELECT number, bytes, checksum FROM {} WHERE number = ?1", table));
   select.bind(1, number);
   if (!select.step()) return std::nullopt;
@@ -297,7 +298,7 @@ std::optional<std::string> RowFile::find(const char* table, std::int64_t number)
 }
 
 void RowFile::read(const char* table, std::uint64_t count, const Use& use) {
-  Statement select = database_->prepare(
+  core::Statement select = database_->prepare(
       fmt::format("SELECT number, bytes, checksum FROM {} ORDER BY number", table));
   std::uint64_t num_read = 0;
   while (select.step()) {

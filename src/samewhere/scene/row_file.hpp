@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include <samewhere/scene/sqlite.hpp>
+#include <samewhere/core/sqlite.hpp>
 #include <samewhere/scene/writer_lock.hpp>
 
 namespace samewhere::scene {
@@ -33,7 +33,7 @@ class RowFile {
   // Of a file from anywhere: its kind, its tables and their columns, and its pages are checked.
   // What a killed program left is put in order, in place or, where the folder cannot be written, in
   // a copy.
-  static RowFile open(const std::filesystem::path& path, const FileKind& kind, OpenMode mode);
+  static RowFile open(const std::filesystem::path& path, const FileKind& kind, core::OpenMode mode);
 
   // Writes into the file what a killed program left beside it. The caller holds the writer's lock.
   static void recover(const std::filesystem::path& path);
@@ -45,10 +45,10 @@ class RowFile {
   // To be called before the first row is put: the log comes beside the file. Until then a file that
   // was opened keeps its bytes.
   void begin_writing();
-  Transaction transaction() { return Transaction(*database_); }
+  core::Transaction transaction() { return core::Transaction(*database_); }
   // Commits, if the disk has room for all that the file holds then: the log can always be written
   // into the file, and its own space given back.
-  void commit(Transaction& transaction);
+  void commit(core::Transaction& transaction);
   // Writes the log into the file, for its room on the disk. Whether it could.
   bool shrink_log();
   // Adds the row or replaces it.
@@ -76,17 +76,17 @@ class RowFile {
 
  private:
   // With a lock it is written.
-  RowFile(std::unique_ptr<Database> database, std::unique_ptr<WriterLock> lock);
+  RowFile(std::unique_ptr<core::Database> database, std::unique_ptr<WriterLock> lock);
   static RowFile open_to_read(const std::filesystem::path& path);
-  Statement& statement(const std::string& sql);
+  core::Statement& statement(const std::string& sql);
   std::string name_of(const char* table, std::int64_t number) const;
 
   std::shared_ptr<const void> copy_;  // that is read instead; removed with the last owner
   std::unique_ptr<WriterLock> lock_;  // of the writer; released after the connection
-  std::unique_ptr<Database> database_;
+  std::unique_ptr<core::Database> database_;
   std::int64_t version_ = 0;
   bool has_log_ = false;
-  std::map<std::string, Statement> statements_;  // by their text; gone before the database
+  std::map<std::string, core::Statement> statements_;  // by their text; gone before the database
 };
 
 }  // namespace samewhere::scene

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/scene/sqlite.hpp>
+#include <samewhere/core/sqlite.hpp>
 #include <samewhere/scene/writer_lock.hpp>
 
 namespace samewhere::scene {
@@ -50,7 +50,7 @@ void WriterLock::reserve(std::uint64_t num_bytes) {
   if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(num_bytes)) == 0) return;
   if (errno != ENOSPC && errno != EDQUOT) return;
   was_refused_ = true;
-  throw NoSpace(path_);
+  throw core::NoSpace(path_);
 }
 
 void WriterLock::give_back_room() {

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/bags/bag.hpp>
+#include <samewhere/bags/compression.hpp>
+#include <samewhere/bags/mcap_format.hpp>
+#include <samewhere/bags/test_bag.hpp>
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
+
+namespace samewhere::bags {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr int kNumImages = 40;
+
+// Two topics; images of 200 KB, so that there are several chunks, each second one recorded late.
+std::vector<ReadMessage> write_recording(const std::filesystem::path& path, const BagKind& kind) {
+  const auto bag = make_bag(path, kind.format, kind.compression);
+  const int images = bag->add_topic<messages::Image>("/camera/image_raw");
+  const int names = bag->add_topic<messages::String>("/name", true);
+  std::vector<ReadMessage> written;
+  for (int i = 0; i < kNumImages; ++i) {
+    const int turn = i % 2 == 0 ? i + 1 : i - 1;
+    const std::int64_t time_ns = kStart_ns + turn * std::int64_t{100'000'000};
+    messages::Image image;
+    image.header.stamp = messages::time_of_nanoseconds(time_ns);
+    image.encoding = "mono8";
+    image.data.assign(200'000, static_cast<std::uint8_t>(i));
+    bag->write_message(images, time_ns, image);
+    written.push_back({"/camera/image_raw", time_ns, write_message(image, bag->layout())});
+    if (i % 10 != 0) continue;
+    const messages::String name{std::to_string(i)};
+    bag->write_message(names, time_ns, name);
+    written.push_back({"/name", time_ns, write_message(name, bag->layout())});
+  }
+  bag->finish();
+  std::stable_sort(written.begin(), written.end(), [](const ReadMessage& a, const ReadMessage& b) {
+    return a.log_time_ns < b.log_time_ns;
+  });
+  return written;
+}
+
+TEST(Bag, ReadsWhatItWritesInTheOrderOfTime) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    const auto written = write_recording(folder.at("bag"), kind);
+    EXPECT_TRUE(is_bag(folder.at("bag")));
+    const auto bag = open_bag(folder.at("bag"));
+    SCOPED_TRACE(bag->info().format + " " + bag->info().compression);
+    EXPECT_EQ(bag->info().damage, "");
+    EXPECT_EQ(bag->info().num_messages, written.size());
+    EXPECT_EQ(bag->info().first_ns, kStart_ns);
+    EXPECT_EQ(bag->info().last_ns, kStart_ns + (kNumImages - 1) * std::int64_t{100'000'000});
+    ASSERT_THAT(bag->topics(), SizeIs(2));
+    EXPECT_EQ(bag->topics()[0].type, "sensor_msgs/Image");
+    EXPECT_EQ(bag->topics()[0].num_messages, 40U);
+    EXPECT_EQ(bag->topics()[1].num_messages, 4U);
+    EXPECT_TRUE(all_messages(*bag) == written);
+    EXPECT_TRUE(all_messages(*bag) == written) << "once more";
+  }
+}
+
+TEST(Bag, GivesTheChosenTopicsAlone) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    write_recording(folder.at("bag"), kind);
+    const auto bag = open_bag(folder.at("bag"));
+    EXPECT_FALSE(bag->next()) << "before it is started";
+    bag->start({1});
+    int count = 0;
+    while (const auto message = bag->next()) {
+      EXPECT_EQ(message->topic, 1);
+      ++count;
+    }
+    EXPECT_EQ(count, 4);
+  }
+}
+
+TEST(Bag, WhatWasNotFinishedLeavesNoFile) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    make_bag(folder.at("bag"), kind.format, kind.compression)->add_topic<messages::String>("/name");
+    EXPECT_TRUE(std::filesystem::is_empty(folder.at("")));
+  }
+}
+
+// Cut anywhere, a file is refused, or gives a beginning of what was written and says that it is
+// cut.
+TEST(Bag, ACutFileGivesItsBeginningAndSaysSo) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    if (kind.format == BagFormat::kSqlite) continue;  // SQLite's own business
+    auto written = write_recording(folder.at("bag"), kind);
+    const std::string whole = core::read_file(folder.at("bag"));
+    for (int part = 1; part < 20; ++part) {
+      core::write_file(folder.at("cut"), whole.substr(0, whole.size() * part / 20));
+      const auto bag = open_bag(folder.at("cut"));
+      EXPECT_NE(bag->info().damage, "");
+      const auto found = all_messages(*bag);
+      EXPECT_LT(found.size(), written.size() + 1);
+      for (const ReadMessage& message : found)
+        EXPECT_NE(std::find(written.begin(), written.end(), message), written.end());
+    }
+  }
+}
+
+TEST(Bag, AWrongChecksumIsFound) {
+  const BagFolder folder;
+  write_recording(folder.at("bag"), {BagFormat::kMcap, Compression::kNone});
+  std::string bytes = core::read_file(folder.at("bag"));
+  bytes[2'000'000] = static_cast<char>(bytes[2'000'000] ^ 1);
+  core::write_file(folder.at("bag"), bytes);
+  const auto bag = open_bag(folder.at("bag"));
+  try {
+    all_messages(*bag);
+    FAIL() << "expected InputError";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("checksum"));
+    EXPECT_THAT(error.what(), HasSubstr(folder.at("bag").string()));
+  }
+}
+
+TEST(Bag, NoByteThatIsChangedDoesMoreThanAnError) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    const auto bag = make_bag(folder.at("bag"), kind.format, kind.compression);
+    const int names = bag->add_topic<messages::String>("/name");
+    for (int i = 0; i < 3; ++i) bag->write_message(names, i, messages::String{std::to_string(i)});
+    bag->finish();
+    const std::string whole = core::read_file(folder.at("bag"));
+    const std::size_t step = kind.format == BagFormat::kMcap ? 3 : 31;
+    for (std::size_t i = 0; i < whole.size(); i += step) {
+      std::string changed = whole;
+      changed[i] = static_cast<char>(~changed[i]);
+      core::write_file(folder.at("changed"), changed);
+      try {
+        all_messages(*open_bag(folder.at("changed")));
+      } catch (const core::InputError&) {
+        // one line, and the program goes on
+      }
+    }
+  }
+}
+
+// A chunk that claims 4 GB takes no memory.
+TEST(Bag, AChunkThatClaimsTooMuchIsRefused) {
+  const BagFolder folder;
+  ByteWriter chunk;
+  chunk.number(std::int64_t{0}).number(std::int64_t{1}).number(std::uint64_t{4'000'000'000});
+  chunk.number(std::uint32_t{0}).text("zstd").number(std::uint64_t{4}).bytes("abcd");
+  core::write_file(folder.at("bag"),
+                   std::string(mcap::kMagic) + mcap::record(mcap::Kind::kChunk, chunk.view()));
+  const auto bag = open_bag(folder.at("bag"));
+  EXPECT_THAT(bag->info().damage, HasSubstr("4000000000"));
+  EXPECT_THROW(all_messages(*bag), core::InputError);
+}
+
+TEST(Bag, FilesOfOtherKindsAreRefused) {
+  const BagFolder folder;
+  core::write_file(folder.at("text"), "a text");
+  EXPECT_FALSE(is_bag(folder.at("text")));
+  EXPECT_THROW(open_bag(folder.at("text")), core::InputError);
+  EXPECT_THROW(open_bag(folder.at("missing")), core::InputError);
+  core::write_file(folder.at("old.bag"), "#ROSBAG V1.2\n");
+  EXPECT_TRUE(is_bag(folder.at("old.bag")));
+  EXPECT_THROW(open_bag(folder.at("old.bag")), core::InputError);
+  core::write_file(folder.at("packed"), "\x28\xb5\x2f\xfd and so on");
+  EXPECT_THROW(open_bag(folder.at("packed")), core::InputError);
+  EXPECT_THROW(make_bag(folder.at("x"), BagFormat::kMcap, Compression::kBz2), core::InputError);
+  EXPECT_THROW(make_bag(folder.at("x"), BagFormat::kRos1, Compression::kZstd), core::InputError);
+  EXPECT_THROW(make_bag(folder.at("x"), BagFormat::kSqlite, Compression::kZstd), core::InputError);
+}
+
+TEST(Bag, AFolderOfRosbag2ListsItsFiles) {
+  const BagFolder folder;
+  const auto first = write_recording(folder.at("a_0.mcap"), {});
+  const auto second = write_recording(folder.at("a_1.mcap"), {});
+  core::write_file(folder.at("metadata.yaml"),
+                   "rosbag2_bagfile_information:\n  relative_file_paths:\n"
+                   "    - a_0.mcap\n    - a/a_1.mcap\n");
+  ASSERT_TRUE(is_bag(folder.at("")));
+  const auto bag = open_bag(folder.at(""));
+  EXPECT_EQ(bag->info().num_messages, first.size() + second.size());
+  EXPECT_EQ(bag->topics()[0].num_messages, 80U);
+  auto both = first;
+  both.insert(both.end(), second.begin(), second.end());
+  EXPECT_TRUE(all_messages(*bag) == both);
+}
+
+TEST(Bag, TheMetadataOfAFileIsReadBack) {
+  const BagFolder folder;
+  const auto written = write_recording(folder.at("a.db3"), {BagFormat::kSqlite, {}});
+  core::write_file(folder.at("metadata.yaml"),
+                   rosbag2_metadata(*open_bag(folder.at("a.db3")), "a.db3"));
+  EXPECT_TRUE(all_messages(*open_bag(folder.at(""))) == written);
+}
+
+TEST(Bag, APublisherWithoutMessagesIsATopic) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    const auto bag = make_bag(folder.at("bag"), kind.format, kind.compression);
+    bag->add_topic<messages::String>("/name");
+    bag->finish();
+    const auto back = open_bag(folder.at("bag"));
+    ASSERT_THAT(back->topics(), SizeIs(1)) << back->info().format;
+    EXPECT_EQ(back->topics()[0].num_messages, 0U);
+    EXPECT_THAT(all_messages(*back), IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace samewhere::bags
