@@ -152,7 +152,20 @@ Verdicts verdicts_of(const core::Ledger& ledger) {
   return verdicts;
 }
 
-// Prints those that differ.
+std::size_t num_accepted(const core::Ledger& ledger) {
+  std::set<std::uint64_t> accepted;
+  for (const core::LedgerRow& row : ledger) {
+    const LoopVerdict verdict = library::verdict_of(row);
+    if (verdict.decision == LoopDecision::kAccepted) {
+      accepted.insert(verdict.candidate);
+    } else {
+      accepted.erase(verdict.candidate);  // a later row of the same: withdrawn
+    }
+  }
+  return accepted.size();
+}
+
+// Prints the first that differ.
 std::size_t num_different(const Verdicts& live, const Verdicts& of_run) {
   std::set<std::uint64_t> candidates;
   for (const auto& [candidate, text] : live) candidates.insert(candidate);
@@ -164,8 +177,9 @@ std::size_t num_different(const Verdicts& live, const Verdicts& of_run) {
     const std::string of_a = a == live.end() ? "none" : a->second;
     const std::string of_b = b == of_run.end() ? "none" : b->second;
     if (of_a == of_b) continue;
-    ++count;
-    core::print("  candidate {}: live {}, run {}\n", candidate, of_a, of_b);
+    constexpr std::size_t kMostPrinted = 5;
+    if (++count <= kMostPrinted)
+      core::print("  candidate {}: live {}, run {}\n", candidate, of_a, of_b);
   }
   return count;
 }
@@ -226,9 +240,10 @@ void compare_closer(const std::string& source, const std::string& odometry,
       add(verdicts, verdict);
   }
   for (const LoopVerdict& verdict : closer.finish()) add(verdicts, verdict);
-  core::print("{} {}: {} verdicts, {} different; {} loops\n", source, sensor, verdicts.size(),
-              num_different(verdicts, verdicts_of(run.record.ledger)),
-              closer.map()->loops().size());
+  const std::size_t num_changed = num_different(verdicts, verdicts_of(run.record.ledger));
+  core::print("{} {}: {} verdicts, {} different; loops: {} of LoopCloser, {} of run\n", source,
+              sensor, verdicts.size(), num_changed, closer.map()->loops().size(),
+              num_accepted(run.record.ledger));
 }
 
 int measure(const std::vector<std::string>& arguments) {

@@ -249,7 +249,7 @@ void add_map_options(CLI::App& sub, RunCommand& command) {
 void add_odometry_option(CLI::App& sub, RunCommand& command) {
   sub.add_option("--odometry", command.odometry,
                  "odometry of the body: a file of lines `stamp tx ty tz qx qy qz qw`, with or "
-                 "without covariances; poses are taken from it and corrected by loops. "
+                 "without covariances, or a bag; poses are taken from it and corrected by loops. "
                  "odometry.sensor names its drift");
 }
 
@@ -261,7 +261,8 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   sub->add_option(
          "SOURCE", command->source,
          "a folder (TUM RGB-D, EuRoC, KITTI, 7-Scenes, HoloLens, images), a list of images, a "
-         "video, a camera (/dev/video0), or twin:PRESET?seed=3")
+         "bag (.mcap, .db3, .bag, a folder of rosbag2), a video, a camera (/dev/video0), or "
+         "twin:PRESET?seed=3")
       ->required();
   sub->add_option("--out", command->out,
                   "folder for the results; without it a new folder runs/NAME");
@@ -274,6 +275,15 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   sub->add_flag("--realtime", command->is_realtime,
                 "process a camera or a video in real time: always the newest frame, others are "
                 "dropped and counted; results differ from run to run");
+  sub->add_option_function<std::string>(
+         "--topics",
+         [command](const std::string& topics) {
+           command->config.assignments.push_back("input.topics=" + topics);
+         },
+         "topics of a bag by their roles: \"color=/a depth=/b\"; roles: color, right, depth, "
+         "camera_info, right_camera_info, imu, odometry, truth; `depth=none` leaves one out; "
+         "`samewhere info` lists topics")
+      ->type_name("ROLE=TOPIC");
   add_config_options(*sub, command->config);
   add_prior_option(*sub, *command);
   add_json_option(*sub, command->figures);
@@ -304,6 +314,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "  samewhere run walk.mp4 --camera camera.txt         a video\n"
           "  samewhere run walk.mp4 --camera camera.txt --realtime  in real time, as a live "
           "camera\n"
+          "  samewhere run walk.mcap                            a bag, its topics found by "
+          "themselves\n"
           "  samewhere run drive --odometry wheels.tum --set odometry.sensor=wheel  own odometry\n"
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
           "  samewhere run flat --prior unique                  no two places look alike: "

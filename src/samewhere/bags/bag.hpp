@@ -36,7 +36,8 @@ struct BagInfo {
   std::uint64_t num_messages = 0;
   std::int64_t first_ns = 0;  // log times; 0 without messages
   std::int64_t last_ns = 0;
-  std::string damage;  // what is wrong with the file though messages can be read; empty: nothing
+  bool is_closed = true;  // false: the recorder was ended before it wrote the index
+  std::string damage;     // what is wrong with the file though messages can be read; empty: nothing
 };
 
 // A recording of messages, read in the order of their log times, equal ones in the order of the

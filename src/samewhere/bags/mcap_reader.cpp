@@ -44,6 +44,7 @@ struct Content {
   mcap::Statistics statistics;
   std::vector<Chunk> chunks;
   std::string compression;
+  bool is_closed = true;
   std::string damage;
   bool ends_loose = false;  // the last part of `chunks` is of messages outside of chunks
 
@@ -177,7 +178,7 @@ class McapReader : public ChunkedReader {
       note_record(kind, offset, *length, content);
       offset += *length;
     }
-    if (content.damage.empty()) content.damage = "was not closed: it has no end";
+    content.is_closed = false;
     return content;
   }
 
@@ -276,6 +277,7 @@ class McapReader : public ChunkedReader {
                      .num_messages = content.statistics.num_messages,
                      .first_ns = content.statistics.first_ns,
                      .last_ns = content.statistics.last_ns,
+                     .is_closed = content.is_closed,
                      .damage = content.damage},
                     std::move(topics), std::move(content.chunks));
     for (const auto& [id, position] : order)

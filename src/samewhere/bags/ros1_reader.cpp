@@ -32,6 +32,7 @@ struct BagContent {
   std::map<std::uint32_t, Connection> connections;
   std::vector<Chunk> chunks;
   std::string compression;
+  bool is_closed = true;
   std::string damage;
 
   void note_connection(const ros1::Record& record) {
@@ -157,7 +158,7 @@ class Ros1Reader : public ChunkedReader {
 
   BagContent scan(std::uint64_t offset) const {
     BagContent content;
-    content.damage = "was not closed: it has no index";
+    content.is_closed = false;
     while (offset < file().size()) {
       core::stop_if_interrupted();
       const auto length = record_length(offset);
@@ -213,6 +214,7 @@ class Ros1Reader : public ChunkedReader {
     std::vector<Topic> topics;
     BagInfo info{.format = "ROS 1 bag",
                  .compression = content.compression.empty() ? "none" : content.compression,
+                 .is_closed = content.is_closed,
                  .damage = content.damage};
     for (const auto& [id, connection] : content.connections) {
       const auto [place, is_new] =

@@ -68,6 +68,7 @@ class SplitReader : public BagReader {
         info_.num_messages == 0 ? part.first_ns : std::min(info_.first_ns, part.first_ns);
     info_.last_ns = info_.num_messages == 0 ? part.last_ns : std::max(info_.last_ns, part.last_ns);
     info_.num_messages += part.num_messages;
+    info_.is_closed = info_.is_closed && part.is_closed;
     if (info_.damage.empty()) info_.damage = part.damage;
   }
 

@@ -13,6 +13,7 @@ struct Config {
   double fov_deg = 0.0;       // horizontal, of a camera without calibration; 0: guessed
   int focal_length_keyframes = 30;  // of the first pass that estimates a guessed focal length
   double max_stamp_difference_s = 0.02;
+  std::string topics;  // of a bag: "color=/a depth=/b"; empty: found
   bool depth = true;
   bool enlarge = true;    // pictures of less than 480 x 360 pixels, in SLAM
   bool realtime = false;  // of a camera, or of a video that is played, the newest frame
@@ -47,6 +48,10 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
        .max = 1000});
   visit("max_stamp_difference_s", config.max_stamp_difference_s,
         {.help = "largest time difference of the images of one frame, s", .min = 0.0, .max = 1.0});
+  visit("topics", config.topics,
+        {.help =
+             "topics of a bag by their roles, `color=/a depth=/b`; empty: found by their types and "
+             "names"});
   visit("depth", config.depth,
         {.help = "depth images are read; false: the recording is treated as monocular"});
   visit("enlarge", config.enlarge,

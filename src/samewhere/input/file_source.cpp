@@ -7,6 +7,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/median.hpp>
+#include <samewhere/core/nanoseconds.hpp>
 #include <samewhere/geometry/camera_check.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/depth_check.hpp>
@@ -124,6 +125,9 @@ void warn_of_depth(const Recording& recording) {
 
 FileSource::FileSource(std::string name, Recording recording) : recording_(std::move(recording)) {
   core::require(!recording_.frames.empty(), "a recording holds at least one frame");
+  // as a bag of the same recording has them: a position divided by a rate is none of them
+  for (FrameFiles& files : recording_.frames)
+    files.stamp_s = core::in_whole_nanoseconds(files.stamp_s);
   for (const auto& image : recording_.frames.front().images) {
     sizes_px_.push_back(read_image(image).size());
   }

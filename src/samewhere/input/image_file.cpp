@@ -228,6 +228,8 @@ cv::Mat decode_depth_other(const path& file, std::string_view bytes) {
                   file.string(), 8 * stored.elemSize1(), stored.channels()));
 }
 
+}  // namespace
+
 cv::Mat metres_from_units(const cv::Mat& stored, double units_per_m) {
   cv::Mat depth_m(stored.size(), CV_32FC1);
   for (int y = 0; y < stored.rows; ++y) {
@@ -252,32 +254,36 @@ cv::Mat metres_from_floats(cv::Mat depth_m) {
   return depth_m;
 }
 
-}  // namespace
-
 bool is_picture(std::string_view bytes) {
   return is_jpeg(bytes) || is_png(bytes) || is_other_picture(bytes);
 }
 
-cv::Mat read_image(const path& path) {
-  const std::string bytes = core::read_file(path, core::kPictureLimit);
-  if (is_jpeg(bytes)) return decode_jpeg(path, bytes);
-  if (is_png(bytes)) return decode_png(path, bytes);
-  if (is_other_picture(bytes)) return as_picture(path, decode_other_picture(path, bytes));
+cv::Mat decode_image(std::string_view bytes, const path& name) {
+  if (is_jpeg(bytes)) return decode_jpeg(name, bytes);
+  if (is_png(bytes)) return decode_png(name, bytes);
+  if (is_other_picture(bytes)) return as_picture(name, decode_other_picture(name, bytes));
   throw InputError(
-      path.string() +
+      name.string() +
       (bytes.empty() ? ": is empty, expected an image, JPEG, PNG, BMP, PNM, TIFF or WebP"
                      : ": is neither JPEG nor PNG, BMP, PNM, TIFF or WebP, the image formats that "
                        "are read"));
 }
 
-cv::Mat read_depth(const path& path, double units_per_m) {
+cv::Mat decode_depth(std::string_view bytes, const path& name, double units_per_m) {
   core::require(units_per_m > 0.0, "depth units per metre are positive");
-  const std::string bytes = core::read_file(path, core::kPictureLimit);
   if (!is_png(bytes) && !is_other_picture(bytes))
-    throw InputError(path.string() + ": is not PNG, PGM or TIFF, expected a depth image");
-  cv::Mat stored = is_png(bytes) ? decode_depth_png(path, bytes) : decode_depth_other(path, bytes);
+    throw InputError(name.string() + ": is not PNG, PGM or TIFF, expected a depth image");
+  cv::Mat stored = is_png(bytes) ? decode_depth_png(name, bytes) : decode_depth_other(name, bytes);
   if (stored.type() == CV_32FC1) return metres_from_floats(std::move(stored));
   return metres_from_units(stored, units_per_m);
+}
+
+cv::Mat read_image(const path& path) {
+  return decode_image(core::read_file(path, core::kPictureLimit), path);
+}
+
+cv::Mat read_depth(const path& path, double units_per_m) {
+  return decode_depth(core::read_file(path, core::kPictureLimit), path, units_per_m);
 }
 
 }  // namespace samewhere::input

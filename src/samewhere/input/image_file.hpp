@@ -23,4 +23,12 @@ cv::Mat read_image(const std::filesystem::path& path);
 // InputError as above.
 cv::Mat read_depth(const std::filesystem::path& path, double units_per_m);
 
+// The same of bytes that were read from elsewhere; messages call them `name`.
+cv::Mat decode_image(std::string_view bytes, const std::filesystem::path& name);
+cv::Mat decode_depth(std::string_view bytes, const std::filesystem::path& name, double units_per_m);
+
+// Depth in units, 16 bits, or in metres, 32-bit floats, as metres; what is no distance becomes 0.
+cv::Mat metres_from_units(const cv::Mat& stored, double units_per_m);
+cv::Mat metres_from_floats(cv::Mat depth_m);
+
 }  // namespace samewhere::input

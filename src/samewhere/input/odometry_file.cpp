@@ -4,8 +4,11 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include <samewhere/bags/bag.hpp>
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file_kind.hpp>
 #include <samewhere/core/text_file.hpp>
+#include <samewhere/input/bag_poses.hpp>
 #include <samewhere/input/odometry_file.hpp>
 
 namespace samewhere::input {
@@ -69,7 +72,8 @@ core::Matrix6d covariance_of(const TextLine& line, const std::vector<double>& nu
 
 }  // namespace
 
-OdometryRows read_odometry(const std::filesystem::path& path) {
+OdometryRows read_odometry(const std::filesystem::path& path, const std::string& topics) {
+  if (core::is_there(path) && bags::is_bag(path)) return read_bag_odometry(path, topics);
   std::vector<TextLine> lines = core::read_text_lines(path);
   core::drop_column_names(lines);
   OdometryRows rows;

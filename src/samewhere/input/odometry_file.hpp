@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <samewhere/core/rigid3.hpp>
@@ -25,6 +26,9 @@ using OdometryRows = std::vector<OdometryRow>;  // stamps ascend strictly; not e
 // 29 (the upper triangle of its covariance, row by row). Throws InputError naming file, line and
 // value: another number of columns, no finite number, a quaternion whose norm is not 1 within 1 %,
 // stamps that do not rise, a covariance that is none, no row.
-OdometryRows read_odometry(const std::filesystem::path& path);
+//
+// Of a bag it reads the topic that `topics` names ("odometry=/odom"), or the only one
+// (bag_poses.hpp).
+OdometryRows read_odometry(const std::filesystem::path& path, const std::string& topics = {});
 
 }  // namespace samewhere::input

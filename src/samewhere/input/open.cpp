@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/bags/bag.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/input/bag_source.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/file_names.hpp>
 #include <samewhere/input/file_source.hpp>
@@ -100,8 +102,8 @@ void require_there(const path& source) {
   if (is_there(source)) return;
   throw InputError(
       source.string() +
-      ": does not exist, expected a folder with a recording, a list of images, a video "
-      "or a camera such as /dev/video0");
+      ": does not exist, expected a folder with a recording, a list of images, a video, "
+      "a bag (.mcap, .db3, .bag) or a camera such as /dev/video0");
 }
 
 }  // namespace
@@ -124,7 +126,7 @@ Recording read_recording(const path& source, const Config& config) {
 }
 
 bool is_video(const path& source) {
-  if (!is_there(source) || is_folder(source)) return false;
+  if (!is_there(source) || is_folder(source) || bags::is_bag(source)) return false;
   if (is_camera_device(source) || is_video_name(source.string())) return true;
   const std::string bytes = beginning_of(source);
   return !is_text(bytes) && !is_wide_text(bytes) && !is_picture(bytes);
@@ -132,6 +134,10 @@ bool is_video(const path& source) {
 
 std::unique_ptr<core::Source> open_source(const path& source, const Config& config) {
   require_there(source);
+  if (bags::is_bag(source)) {
+    check_config(config);
+    return open_bag_source(source, config);
+  }
   if (is_video(source)) {
     check_config(config);
     return open_video(source, config);

@@ -10,10 +10,10 @@
 namespace samewhere::input {
 
 // The recording at `source`: a folder, whose format is told by what is in it (formats.hpp), a text
-// file that lists images, a video by its name or because it is neither text nor a picture, or a
-// camera's device (video.hpp). Frames are read
-// one at a time, when asked for. Throws InputError if there is nothing known there, or if anything
-// that text files say is missing or broken; a bad image is reported by next().
+// file that lists images, a bag (bag_source.hpp), a video by its name or because it is neither text
+// nor a picture, or a camera's device (video.hpp). Frames are read one at a time, when asked for.
+// Throws InputError if there is nothing known there, or if anything that text files say is missing
+// or broken; a bad image is reported by next().
 std::unique_ptr<core::Source> open_source(const std::filesystem::path& source,
                                           const Config& config);
 

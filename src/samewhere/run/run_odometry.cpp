@@ -18,7 +18,8 @@ pipeline::OdometryConfig settled(pipeline::OdometryConfig config, const input::O
 
 pipeline::Config with_odometry_sensor(pipeline::Config config) {
   if (config.odometry.is_used())
-    config.odometry = settled(config.odometry, input::read_odometry(config.odometry.file));
+    config.odometry =
+        settled(config.odometry, input::read_odometry(config.odometry.file, config.input.topics));
   return config;
 }
 
@@ -29,7 +30,7 @@ RunOdometry::RunOdometry(const pipeline::Config& config, const core::SourceInfo&
                            ": odometry from a file needs a recording; found a live camera as "
                            "source");
   }
-  input::OdometryRows rows = input::read_odometry(settings_.file);
+  input::OdometryRows rows = input::read_odometry(settings_.file, config.input.topics);
   settings_ = settled(settings_, rows);
   path_ = std::make_shared<const pipeline::OdometryPath>(settings_, std::move(rows));
 }

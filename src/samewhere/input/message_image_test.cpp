@@ -1,0 +1,174 @@
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/geometry/camera.hpp>
+#include <samewhere/input/message_image.hpp>
+#include <samewhere/input/test_folder.hpp>
+
+namespace samewhere::input {
+namespace {
+
+using core::InputError;
+using ::testing::HasSubstr;
+
+messages::Image message_of(const std::string& encoding, std::uint32_t width, std::uint32_t height,
+                           std::vector<std::uint8_t> data) {
+  messages::Image image;
+  image.encoding = encoding;
+  image.width = width;
+  image.height = height;
+  image.step = static_cast<std::uint32_t>(data.size()) / height;
+  image.data = std::move(data);
+  return image;
+}
+
+TEST(MessageImage, EveryColourEncodingShowsTheSameRed) {
+  const cv::Vec3b red(0, 0, 255);
+  EXPECT_EQ(image_of(message_of("bgr8", 1, 1, {0, 0, 255}), "a").at<cv::Vec3b>(0, 0), red);
+  EXPECT_EQ(image_of(message_of("rgb8", 1, 1, {255, 0, 0}), "a").at<cv::Vec3b>(0, 0), red);
+  EXPECT_EQ(image_of(message_of("bgra8", 1, 1, {0, 0, 255, 9}), "a").at<cv::Vec3b>(0, 0), red);
+  EXPECT_EQ(image_of(message_of("rgba8", 1, 1, {255, 0, 0, 9}), "a").at<cv::Vec3b>(0, 0), red);
+  EXPECT_EQ(image_of(message_of("rgb16", 1, 1, {255, 255, 0, 0, 0, 0}), "a").at<cv::Vec3b>(0, 0),
+            red);
+}
+
+// Red in the first place of the pattern alone; in the middle of the picture OpenCV makes it red.
+TEST(MessageImage, BayerPatternsAreNamedByTheirFirstRow) {
+  const auto pattern = [](int red_x, int red_y) {
+    std::vector<std::uint8_t> data(8 * 8, 0);
+    for (int y = red_y; y < 8; y += 2)
+      for (int x = red_x; x < 8; x += 2) data[static_cast<std::size_t>(8 * y + x)] = 200;
+    return data;
+  };
+  const std::pair<const char*, std::vector<std::uint8_t>> all[] = {{"bayer_rggb8", pattern(0, 0)},
+                                                                   {"bayer_grbg8", pattern(1, 0)},
+                                                                   {"bayer_gbrg8", pattern(0, 1)},
+                                                                   {"bayer_bggr8", pattern(1, 1)}};
+  for (const auto& [encoding, data] : all) {
+    const cv::Vec3b middle = image_of(message_of(encoding, 8, 8, data), "a").at<cv::Vec3b>(4, 4);
+    EXPECT_GT(middle[2], 90) << encoding;
+    EXPECT_EQ(middle[0], 0) << encoding;
+  }
+}
+
+TEST(MessageImage, GreyStaysGrey) {
+  const cv::Mat grey = image_of(message_of("mono8", 2, 1, {7, 8}), "a");
+  EXPECT_EQ(grey.type(), CV_8UC1);
+  EXPECT_EQ(grey.at<std::uint8_t>(0, 1), 8);
+  EXPECT_EQ(image_of(message_of("mono16", 1, 1, {0, 128}), "a").at<std::uint8_t>(0, 0), 128);
+  messages::Image big = message_of("mono16", 1, 1, {128, 0});
+  big.is_bigendian = 1;
+  EXPECT_EQ(image_of(big, "a").at<std::uint8_t>(0, 0), 128);
+}
+
+TEST(MessageImage, YuvBecomesColour) {
+  // a grey of 128: both chroma values are 128
+  for (const char* encoding : {"yuv422", "yuv422_yuy2"}) {
+    const bool is_luma_second = std::string(encoding) == "yuv422";
+    const std::uint8_t luma = 200;
+    const std::vector<std::uint8_t> data =
+        is_luma_second ? std::vector<std::uint8_t>{128, luma, 128, luma, 128, luma, 128, luma}
+                       : std::vector<std::uint8_t>{luma, 128, luma, 128, luma, 128, luma, 128};
+    const cv::Vec3b pixel = image_of(message_of(encoding, 2, 2, data), "a").at<cv::Vec3b>(0, 0);
+    EXPECT_EQ(pixel[0], pixel[1]) << encoding;
+    EXPECT_GT(pixel[0], 190) << encoding;
+  }
+}
+
+TEST(MessageImage, RowsMayHavePadding) {
+  messages::Image padded = message_of("mono8", 2, 2, {1, 2, 99, 3, 4, 99});
+  padded.step = 3;
+  EXPECT_EQ(image_of(padded, "a").at<std::uint8_t>(1, 0), 3);
+}
+
+TEST(MessageImage, WhatDoesNotFitIsRefusedInOneLine) {
+  const auto message = [](const messages::Image& image) {
+    try {
+      image_of(image, "/camera 12.5");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message(message_of("jpeg2000", 1, 1, {1})),
+              HasSubstr("/camera 12.5: has the encoding 'jpeg2000'"));
+  EXPECT_THAT(message(message_of("bgr8", 2, 1, {1, 2, 3})),
+              HasSubstr("expected 1 rows of at least 6"));
+  EXPECT_THAT(message(message_of("mono8", 4'000'000'000U, 1, {1})), HasSubstr("pixels"));
+  EXPECT_THAT(message(message_of("bayer_rggb8", 1, 1, {1})), HasSubstr("even"));
+  messages::Image empty = message_of("mono8", 1, 1, {});
+  EXPECT_NE(message(empty), "");
+}
+
+TEST(MessageDepth, IsInMetres) {
+  const cv::Mat millimetres = depth_of(message_of("16UC1", 2, 1, {0xe8, 0x03, 0, 0}), "a", 1000.0);
+  EXPECT_EQ(millimetres.at<float>(0, 0), 1.0F);
+  EXPECT_EQ(millimetres.at<float>(0, 1), 0.0F);
+  std::vector<std::uint8_t> data(8);
+  const float values[] = {2.5F, std::numeric_limits<float>::quiet_NaN()};
+  std::memcpy(data.data(), values, 8);
+  const cv::Mat metres = depth_of(message_of("32FC1", 2, 1, data), "a", 1000.0);
+  EXPECT_EQ(metres.at<float>(0, 0), 2.5F);
+  EXPECT_EQ(metres.at<float>(0, 1), 0.0F);
+  EXPECT_THROW(depth_of(message_of("bgr8", 1, 1, {1, 2, 3}), "a", 1000.0), InputError);
+}
+
+messages::CameraInfo camera_info(const std::string& model, std::vector<double> d) {
+  messages::CameraInfo info;
+  info.width = 640;
+  info.height = 480;
+  info.distortion_model = model;
+  info.d = std::move(d);
+  info.k = {500, 0, 319.5, 0, 510, 239.5, 0, 0, 1};
+  info.p = {400, 0, 300, 0, 0, 400, 200, 0, 0, 0, 1, 0};
+  return info;
+}
+
+TEST(MessageCamera, HasTheModelsOfRos) {
+  const auto plumb_bob = std::get<core::PinholeRadtan>(
+      *camera_of(camera_info("plumb_bob", {0.1, -0.2, 0.01, 0.02, 0.3}), false, "a"));
+  EXPECT_EQ(plumb_bob.fx_px, 500.0);
+  EXPECT_EQ(plumb_bob.fy_px, 510.0);
+  EXPECT_EQ(plumb_bob.k3, 0.3);
+  EXPECT_EQ(plumb_bob.p1, 0.01);
+  const auto rational = std::get<core::PinholeRadtan>(
+      *camera_of(camera_info("rational_polynomial", {0.1, 0, 0, 0, 0, 0.05, 0, 0}), false, "a"));
+  EXPECT_EQ(rational.k4, 0.05);
+  const auto fisheye = std::get<core::KannalaBrandt>(
+      *camera_of(camera_info("equidistant", {0.01, 0.02, 0.0, 0.0}), false, "a"));
+  EXPECT_EQ(fisheye.k2, 0.02);
+  const auto rectified = std::get<core::PinholeRadtan>(
+      *camera_of(camera_info("plumb_bob", {0.1, -0.2, 0.01, 0.02, 0.3}), true, "a"));
+  EXPECT_EQ(rectified.fx_px, 400.0);
+  EXPECT_EQ(rectified.k1, 0.0);
+}
+
+TEST(MessageCamera, KnowsNoneAndRefusesOthers) {
+  messages::CameraInfo none = camera_info("", {});
+  none.k = {};
+  EXPECT_FALSE(camera_of(none, false, "a"));
+  EXPECT_TRUE(camera_of(camera_info("", {}), false, "a"));
+  EXPECT_THROW(camera_of(camera_info("omni", {1.0}), false, "a"), InputError);
+  EXPECT_THROW(camera_of(camera_info("plumb_bob", {1e9}), false, "a"), InputError);
+}
+
+// A picture of which each pixel is the mean of two by two: its centres lie half a pixel aside.
+TEST(MessageCamera, OfACroppedAndBinnedPictureHasItsPixels) {
+  messages::CameraInfo info = camera_info("plumb_bob", {});
+  info.binning_x = info.binning_y = 2;
+  info.roi = {.x_offset = 40, .y_offset = 20, .height = 400, .width = 560};
+  const auto camera = std::get<core::PinholeRadtan>(*camera_of(info, false, "a"));
+  EXPECT_EQ(camera.width_px, 280);
+  EXPECT_EQ(camera.height_px, 200);
+  EXPECT_EQ(camera.fx_px, 250.0);
+  EXPECT_EQ(camera.cx_px, (319.5 - 40.0 - 0.5) / 2.0);
+}
+
+}  // namespace
+}  // namespace samewhere::input
