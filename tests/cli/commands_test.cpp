@@ -61,8 +61,8 @@ TEST_F(Commands, TrainWordsWritesAVocabularyThatLoopsReads) {
 
 TEST_F(Commands, HelpShowsAnExampleOfEach) {
   EXPECT_EQ(run("--help").exit_code, 0);
-  for (const std::string command : {"run", "loops", "eval", "dense", "bench", "twin", "map",
-                                    "config", "calibrate", "doctor", "train words"}) {
+  for (const std::string command : {"run", "loops", "eval", "dense", "export", "bench", "twin",
+                                    "map", "config", "calibrate", "doctor", "train words"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << command;

@@ -1,19 +1,9 @@
-#include <bit>
-
 #include <fmt/format.h>
 
+#include <samewhere/report/little_endian.hpp>
 #include <samewhere/report/ply.hpp>
 
 namespace samewhere::report {
-namespace {
-
-void append_little_endian(std::string& bytes, float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  for (int shift = 0; shift < 32; shift += 8)
-    bytes += static_cast<char>(static_cast<unsigned char>(bits >> shift));
-}
-
-}  // namespace
 
 std::string ply_bytes(const std::vector<ColouredPoint>& points) {
   std::string vertices;
@@ -22,7 +12,7 @@ std::string ply_bytes(const std::vector<ColouredPoint>& points) {
     if (!point.in_world.allFinite()) continue;
     ++num_vertices;
     for (const float coordinate : point.in_world) append_little_endian(vertices, coordinate);
-    for (const std::uint8_t channel : point.rgb) vertices += static_cast<char>(channel);
+    for (const std::uint8_t channel : point.rgb) append_little_endian(vertices, channel);
   }
   return fmt::format(
              "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"

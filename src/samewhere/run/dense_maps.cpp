@@ -10,8 +10,6 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
-#include <samewhere/core/interrupt.hpp>
-#include <samewhere/core/progress.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/dense/floor.hpp>
 #include <samewhere/dense/occupancy_grid.hpp>
@@ -20,11 +18,10 @@
 #include <samewhere/dense/stereo_depth.hpp>
 #include <samewhere/dense/view.hpp>
 #include <samewhere/dense/voxel_cloud.hpp>
-#include <samewhere/input/prefetch.hpp>
 #include <samewhere/report/ply.hpp>
 #include <samewhere/run/dense_maps.hpp>
-#include <samewhere/run/open_source.hpp>
 #include <samewhere/run/run_lists.hpp>
+#include <samewhere/run/source_frames.hpp>
 
 namespace samewhere::run {
 namespace {
@@ -87,46 +84,36 @@ Poses read_keyframe_poses(const std::filesystem::path& run, const core::FolderLo
   return poses;
 }
 
+std::set<std::uint64_t> positions_of(const Poses& poses) {
+  std::set<std::uint64_t> positions;
+  for (const auto& [position, pose] : poses) positions.insert(position);
+  return positions;
+}
+
 // Reads the keyframes of a source as views with depth.
 class ViewReader {
  public:
-  explicit ViewReader(const pipeline::Config& config)
-      : config_(config),
-        source_(input::prefetched(open_source(config))),
-        info_(source_->info()),
-        progress_("frames", info_.num_frames) {
-    if (!info_.is_calibrated) {
+  ViewReader(const pipeline::Config& config, const Poses& poses)
+      : config_(config), poses_(poses), frames_(config, positions_of(poses)) {
+    if (!frames_.info().is_calibrated) {
       throw core::InputError(config.source + ": no camera file, which dense maps need");
     }
   }
 
   // The next frame that has a pose and depth.
-  std::optional<dense::View> next(const Poses& poses) {
-    while (num_views_ < poses.size()) {
-      core::stop_if_interrupted();
-      const std::optional<core::Frame> frame = source_->next();
-      if (!frame) complain_about_length(poses);
-      progress_.update(static_cast<int>(frame->id.index()) + 1);
-      const auto pose = poses.find(frame->id.index());
-      if (pose == poses.end()) continue;
-      ++num_views_;
+  std::optional<dense::View> next() {
+    while (const std::optional<core::Frame> frame = frames_.next()) {
       const auto depth_m = depth_of(*frame);
       if (!depth_m) continue;
-      return dense::View{frame->rig->cameras[0], pose->second, frame->images[0], *depth_m};
+      return dense::View{frame->rig->cameras[0], poses_.at(frame->id.index()), frame->images[0],
+                         *depth_m};
     }
     return std::nullopt;
   }
 
  private:
-  [[noreturn]] void complain_about_length(const Poses& poses) const {
-    throw core::InputError(
-        fmt::format("{}: ended before frame {}, which frames.csv of the run "
-                    "names: the source has changed since the run",
-                    config_.source, poses.rbegin()->first));
-  }
-
   std::optional<cv::Mat> depth_of(const core::Frame& frame) const {
-    if (info_.has_depth) return frame.depth_m;
+    if (frames_.info().has_depth) return frame.depth_m;
     if (frame.images.size() < 2 || frame.rig->cameras.size() < 2) {
       throw core::InputError(config_.source +
                              ": found neither depth images nor a second camera, expected one of "
@@ -136,10 +123,8 @@ class ViewReader {
   }
 
   const pipeline::Config& config_;
-  std::unique_ptr<core::Source> source_;
-  core::SourceInfo info_;
-  core::Progress progress_;
-  std::size_t num_views_ = 0;
+  const Poses& poses_;
+  SourceFrames frames_;
 };
 
 // Fused depth of all keyframes.
@@ -156,9 +141,9 @@ struct Fused {
 std::unique_ptr<Fused> fuse(const pipeline::Config& config, const Poses& poses,
                             const DenseFiles& files) {
   auto fused = std::make_unique<Fused>(config.dense);
-  ViewReader reader(config);
+  ViewReader reader(config, poses);
   dense::PointReader point_reader(config.dense);
-  while (const auto view = reader.next(poses)) {
+  while (const auto view = reader.next()) {
     const auto points = point_reader.points(*view);
     const Eigen::Vector3d& camera_m = view->world_from_camera.translation;
     if (!files.cloud.empty() || !files.grid.empty()) fused->cloud.add(points);

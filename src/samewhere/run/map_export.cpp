@@ -47,23 +47,24 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
   return figures;
 }
 
+int session_of(const scene::StoredMap& stored, int wanted) {
+  const std::vector<core::FramePose>& all = stored.extras.frames;
+  if (all.empty()) return std::max(wanted, 0);
+  const int last = all.back().frame.session();
+  if (wanted <= last && (wanted >= 0 || last == 0)) return std::max(wanted, 0);
+  throw core::InputError(
+      fmt::format("--session = {}: the map holds frames of {} sessions, each with its own stamps; "
+                  "expected one of 0 to {}",
+                  wanted < 0 ? "none" : std::to_string(wanted), last + 1, last));
+}
+
 namespace {
 
 // Of one session: stamps of different sessions may be equal.
-std::vector<core::FramePose> frames_of(const scene::StoredMap& stored, const MapExports& wanted) {
-  const std::vector<core::FramePose>& all = stored.extras.frames;
-  if (all.empty()) return {};
-  const int last = all.back().frame.session();
-  if (wanted.session > last || (wanted.session < 0 && last > 0)) {
-    throw core::InputError(fmt::format(
-        "--session = {}: the map holds frames of {} sessions, each with its own stamps; "
-        "expected one of 0 to {}",
-        wanted.session < 0 ? "none" : std::to_string(wanted.session), last + 1, last));
-  }
+std::vector<core::FramePose> frames_of(const scene::StoredMap& stored, int session) {
   std::vector<core::FramePose> frames;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(frames), [&](const auto& frame) {
-    return wanted.session < 0 || frame.frame.session() == wanted.session;
-  });
+  std::copy_if(stored.extras.frames.begin(), stored.extras.frames.end(), std::back_inserter(frames),
+               [&](const auto& frame) { return frame.frame.session() == session; });
   return frames;
 }
 
@@ -98,7 +99,7 @@ void export_map(const scene::StoredMap& stored, const MapExports& wanted) {
   if (!wanted.ply.empty()) core::write_file(wanted.ply, report::ply_bytes(points_of(stored.map)));
   if (!wanted.tum.empty() || !wanted.kitti.empty()) {
     const core::Trajectory trajectory =
-        pipeline::trajectory_of(stored.map, frames_of(stored, wanted));
+        pipeline::trajectory_of(stored.map, frames_of(stored, session_of(stored, wanted.session)));
     if (!wanted.tum.empty()) core::write_file(wanted.tum, core::tum_text(trajectory));
     if (!wanted.kitti.empty()) core::write_file(wanted.kitti, core::kitti_text(trajectory));
   }

@@ -15,6 +15,10 @@ std::vector<report::ColouredPoint> points_of(const scene::MapVersion& map);
 std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
                                            const scene::StoredMap& stored);
 
+// The session whose frames are wanted: `wanted`, or where that is -1 the only one. Throws
+// InputError if there is no such session, or several and none was named.
+int session_of(const scene::StoredMap& stored, int wanted);
+
 // Files to be written from a map; empty: not wanted.
 struct MapExports {
   std::filesystem::path ply;    // landmarks, metres, with colour
@@ -25,8 +29,7 @@ struct MapExports {
 };
 
 // Each whole or not at all. Throws InputError if none is wanted, two are one file, one cannot be
-// written, or if frames are wanted and
-// there is no such session, or several and none was named.
+// written, or if frames are wanted and session_of() throws.
 void export_map(const scene::StoredMap& stored, const MapExports& wanted);
 
 }  // namespace samewhere::run
