@@ -128,6 +128,10 @@ FileSource::FileSource(std::string name, Recording recording) : recording_(std::
   // as a bag of the same recording has them: a position divided by a rate is none of them
   for (FrameFiles& files : recording_.frames)
     files.stamp_s = core::in_whole_nanoseconds(files.stamp_s);
+  for (core::StampedPose& pose : recording_.truth.trajectory)
+    pose.stamp_s = core::in_whole_nanoseconds(pose.stamp_s);
+  for (core::InertialTruth& state : recording_.truth.inertial)
+    state.stamp_s = core::in_whole_nanoseconds(state.stamp_s);
   for (const auto& image : recording_.frames.front().images) {
     sizes_px_.push_back(read_image(image).size());
   }

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <samewhere/core/nanoseconds.hpp>
 #include <samewhere/input/test_recording.hpp>
 
 namespace samewhere::input {
@@ -24,8 +25,8 @@ TEST_F(Images, AnImageFolderIsReadInTheOrderOfItsNumbers) {
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_EQ(frames[2].name, "10.jpg");
   EXPECT_EQ(frames[2].id, core::FrameId(2));
-  EXPECT_DOUBLE_EQ(frames[1].stamp_s, 2.0 / 30.0);
-  EXPECT_DOUBLE_EQ(frames[2].stamp_s, 10.0 / 30.0);
+  EXPECT_DOUBLE_EQ(frames[1].stamp_s, core::in_whole_nanoseconds(2.0 / 30.0));
+  EXPECT_DOUBLE_EQ(frames[2].stamp_s, core::in_whole_nanoseconds(10.0 / 30.0));
   EXPECT_FALSE(frames[0].depth_m);
   ASSERT_TRUE(frames[0].rig);
   EXPECT_FALSE(frames[0].rig->is_calibrated());
@@ -44,7 +45,7 @@ TEST_F(Images, NumbersThatStartAgainCountByPosition) {
   for (const char* name : {"a_1.jpg", "a_2.jpg", "b_1.jpg"}) write_image(name);
   const std::vector<core::Frame> frames = read_all();
   ASSERT_EQ(frames.size(), 3U);
-  EXPECT_DOUBLE_EQ(frames[2].stamp_s, 2.0 / 30.0);
+  EXPECT_DOUBLE_EQ(frames[2].stamp_s, core::in_whole_nanoseconds(2.0 / 30.0));
 }
 
 TEST_F(Images, AnImageOfAnotherSizeInTheMiddleIsNamed) {
@@ -171,7 +172,7 @@ TEST_F(ColourAndDepth, FoldersWithoutListsAreRead) {
   EXPECT_TRUE(source->info().has_depth);
   EXPECT_TRUE(source->info().is_calibrated);
   const std::vector<core::Frame> frames = read_all();
-  EXPECT_DOUBLE_EQ(frames[1].stamp_s, 2 / 30.0);
+  EXPECT_DOUBLE_EQ(frames[1].stamp_s, core::in_whole_nanoseconds(2 / 30.0));
   EXPECT_FLOAT_EQ(frames[1].depth_m->at<float>(0, 0), 2.5F);
   std::filesystem::remove_all(folder_.at("depth"));
   EXPECT_FALSE(open()->info().has_depth);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include <samewhere/core/nanoseconds.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/input/open.hpp>
 #include <samewhere/input/prefetch.hpp>
@@ -81,7 +82,7 @@ TEST_F(RealData, RedKitchen) {
   EXPECT_EQ(first->images[0].size(), cv::Size(640, 480));
   expect_a_room(*first);
   EXPECT_EQ(first->stamp_s, 0.0);
-  EXPECT_DOUBLE_EQ(source->next()->stamp_s, 1.0 / 30.0);
+  EXPECT_DOUBLE_EQ(source->next()->stamp_s, core::in_whole_nanoseconds(1.0 / 30.0));
 }
 
 TEST_F(RealData, TumFr1Rpy) {
@@ -140,7 +141,7 @@ TEST_F(RealData, RtabmapCorridor) {
   EXPECT_EQ(num_queries_with_loop, 44);
   const std::vector<double> stamps_s = read_stamps(*source);
   ASSERT_EQ(stamps_s.size(), 84U);
-  EXPECT_DOUBLE_EQ(stamps_s.front(), 1.0 / 30.0);
+  EXPECT_DOUBLE_EQ(stamps_s.front(), core::in_whole_nanoseconds(1.0 / 30.0));
 }
 
 TEST_F(RealData, TheTowerWalkIsAList) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <samewhere/core/nanoseconds.hpp>
 #include <samewhere/input/test_recording.hpp>
 
 namespace samewhere::input {
@@ -31,13 +32,13 @@ TEST_F(SevenScenes, FramesDepthAndPosesComeTogether) {
   EXPECT_EQ(source->info().num_frames, 3);
   const std::vector<core::Frame> frames = read_all();
   ASSERT_EQ(frames.size(), 3U);
-  EXPECT_DOUBLE_EQ(frames[2].stamp_s, 5.0 / 30.0);
+  EXPECT_DOUBLE_EQ(frames[2].stamp_s, core::in_whole_nanoseconds(5.0 / 30.0));
   EXPECT_EQ(frames[2].name, "frame-000005.color.png");
   EXPECT_EQ(cv::norm(frames[2].images[0], picture(32, 24, 5), cv::NORM_INF), 0.0);
   EXPECT_FLOAT_EQ(frames[2].depth_m->at<float>(0, 0), 2.5F);
   const core::Trajectory truth = source->truth().trajectory;
   ASSERT_EQ(truth.size(), 3U);
-  EXPECT_DOUBLE_EQ(truth[2].stamp_s, 5.0 / 30.0);
+  EXPECT_DOUBLE_EQ(truth[2].stamp_s, core::in_whole_nanoseconds(5.0 / 30.0));
   EXPECT_EQ(truth[2].world_from_camera.translation, Eigen::Vector3d(5.0, 0.0, 2.0));
   // a quarter turn about z: x of the camera is y of the world
   EXPECT_LT(

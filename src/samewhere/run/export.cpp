@@ -14,6 +14,7 @@
 #include <samewhere/report/ply.hpp>
 #include <samewhere/run/export.hpp>
 #include <samewhere/run/export_colmap.hpp>
+#include <samewhere/run/export_mcap.hpp>
 #include <samewhere/run/export_nerfstudio.hpp>
 #include <samewhere/run/export_pictures.hpp>
 #include <samewhere/run/export_place.hpp>
@@ -51,6 +52,18 @@ ExportFigures write_g2o(const ExportJob& job) {
 ExportFigures write_ply(const ExportJob& job) {
   export_map(job.stored, {.ply = job.request.out});
   return file_figures(job);
+}
+
+ExportFigures write_mcap(const ExportJob& job) {
+  const pipeline::Config config = config_of_run(job.request.run);
+  const McapCounts counts = write_mcap_of_run(
+      job.stored, session_of(job.stored, job.request.session), config, job.request.out);
+  ExportFigures figures = file_figures(job);
+  figures.push_back(report::figure("poses", "{}", counts.num_poses));
+  figures.push_back(report::figure("points", "{}", counts.num_points));
+  figures.push_back(report::figure("pictures", "{}", counts.num_pictures));
+  figures.push_back(report::figure("verdicts", "{}", counts.num_verdicts));
+  return figures;
 }
 
 ExportFigures write_las(const ExportJob& job) {
@@ -139,6 +152,9 @@ constexpr std::array kFormats = {
                  true, &write_colmap},
     ExportFormat{"nerfstudio", "nerfstudio", "transforms.json, pictures and depth of the keyframes",
                  true, false, &write_nerfstudio},
+    ExportFormat{"mcap", "export.mcap",
+                 "ROS 2 messages: TF, path, points, pictures of the keyframes, verdicts", false,
+                 false, &write_mcap},
     ExportFormat{"tum", "export.tum", "measured frames: stamp tx ty tz qx qy qz qw", false, false,
                  &write_tum},
     ExportFormat{"kitti", "export-kitti.txt", "the same frames without stamps: 3 x 4 matrices",
