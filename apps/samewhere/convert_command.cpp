@@ -28,13 +28,13 @@ struct ConvertCommand {
 };
 
 run::BagOptions options_of(const ConvertCommand& command) {
-  static const std::map<std::string, bags::Compression> kCompressions = {
+  static const std::map<std::string, bags::Compression> compressions = {
       {"none", bags::Compression::kNone},
       {"lz4", bags::Compression::kLz4},
       {"zstd", bags::Compression::kZstd},
       {"bz2", bags::Compression::kBz2}};
   run::BagOptions options{.format = run::bag_format_of(command.file),
-                          .compression = kCompressions.at(command.compression),
+                          .compression = compressions.at(command.compression),
                           .is_jpeg = command.is_jpeg};
   if (command.storage == "sqlite3") options.format = bags::BagFormat::kSqlite;
   return options;

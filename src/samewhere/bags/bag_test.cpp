@@ -205,6 +205,19 @@ TEST(Bag, TheMetadataOfAFileIsReadBack) {
   EXPECT_TRUE(all_messages(*open_bag(folder.at(""))) == written);
 }
 
+TEST(Bag, TimesMayBeginAtZero) {
+  const BagFolder folder;
+  for (const BagKind& kind : all_bag_kinds()) {
+    const auto bag = make_bag(folder.at("bag"), kind.format, kind.compression);
+    const int names = bag->add_topic<messages::String>("/name");
+    for (const std::int64_t time_ns : {0, 7})
+      bag->write_message(names, time_ns, messages::String{"a"});
+    bag->finish();
+    EXPECT_EQ(open_bag(folder.at("bag"))->info().first_ns, 0);
+    EXPECT_EQ(open_bag(folder.at("bag"))->info().last_ns, 7);
+  }
+}
+
 TEST(Bag, APublisherWithoutMessagesIsATopic) {
   const BagFolder folder;
   for (const BagKind& kind : all_bag_kinds()) {

@@ -73,10 +73,15 @@ std::string unpack_bz2(std::string_view packed, std::size_t size) {
   return bytes;
 }
 
+// ROS 1 reads frames of independent blocks with a checksum of the content alone (roslz4).
 std::string pack_lz4(std::string_view bytes) {
-  std::string packed(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
+  LZ4F_preferences_t preferences{};
+  preferences.frameInfo.blockSizeID = LZ4F_max256KB;
+  preferences.frameInfo.blockMode = LZ4F_blockIndependent;
+  preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  std::string packed(LZ4F_compressFrameBound(bytes.size(), &preferences), '\0');
   const std::size_t size =
-      LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr);
+      LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), &preferences);
   core::require(LZ4F_isError(size) == 0, "lz4 packs into a buffer of its bound");
   packed.resize(size);
   return packed;

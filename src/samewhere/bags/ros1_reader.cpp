@@ -226,8 +226,9 @@ class Ros1Reader : public ChunkedReader {
       info.num_messages += connection.num_messages;
     }
     for (const Chunk& chunk : content.chunks) {
-      info.first_ns = info.first_ns == 0 ? chunk.first_ns : std::min(info.first_ns, chunk.first_ns);
-      info.last_ns = std::max(info.last_ns, chunk.last_ns);
+      const bool is_first = &chunk == &content.chunks.front();
+      info.first_ns = is_first ? chunk.first_ns : std::min(info.first_ns, chunk.first_ns);
+      info.last_ns = is_first ? chunk.last_ns : std::max(info.last_ns, chunk.last_ns);
     }
     const std::vector<int> positions =
         set_content(std::move(info), std::move(topics), std::move(content.chunks));

@@ -71,7 +71,7 @@ class WireReader {
   T number() {
     align(sizeof(T));
     require_rest(1, sizeof(T));
-    std::array<char, sizeof(T)> raw;
+    std::array<char, sizeof(T)> raw{};
     std::memcpy(raw.data(), bytes_.data() + position_, sizeof(T));
     position_ += sizeof(T);
     if (is_swapped_) {
