@@ -165,6 +165,21 @@ TEST(Bag, AChunkThatClaimsTooMuchIsRefused) {
   EXPECT_THROW(all_messages(*bag), core::InputError);
 }
 
+// 64 GB without a disk for them: nothing is read twice, and no memory is taken.
+TEST(Bag, ASparseFileIsToldAtOnce) {
+  const BagFolder folder;
+  for (const std::string magic : {std::string(mcap::kMagic), std::string("#ROSBAG V2.0\n")}) {
+    core::write_file(folder.at("sparse"), magic);
+    std::filesystem::resize_file(folder.at("sparse"), std::uintmax_t{64} << 30);
+    const auto bag = open_bag(folder.at("sparse"));
+    EXPECT_THAT(bag->info().damage, HasSubstr("is cut or damaged at byte"));
+    EXPECT_THAT(all_messages(*bag), IsEmpty());
+  }
+  core::write_file(folder.at("sparse"), std::string("SQLite format 3\0", 16));
+  std::filesystem::resize_file(folder.at("sparse"), std::uintmax_t{64} << 30);
+  EXPECT_THROW(open_bag(folder.at("sparse")), core::InputError);
+}
+
 TEST(Bag, FilesOfOtherKindsAreRefused) {
   const BagFolder folder;
   core::write_file(folder.at("text"), "a text");

@@ -162,12 +162,13 @@ class Ros1Reader : public ChunkedReader {
     while (offset < file().size()) {
       core::stop_if_interrupted();
       const auto length = record_length(offset);
-      if (!length) {
+      const auto op = length ? op_at(offset) : std::nullopt;
+      if (!op) {
         content.damage = fmt::format("is cut or damaged at byte {}", offset);
         break;
       }
       try {
-        note_record(offset, *length, content);
+        note_record(*op, offset, *length, content);
       } catch (const InputError& error) {
         content.damage = fmt::format("is damaged at byte {}: {}", offset, error.what());
       }
@@ -176,8 +177,16 @@ class Ros1Reader : public ChunkedReader {
     return content;
   }
 
-  void note_record(std::uint64_t offset, std::uint64_t length, BagContent& content) const {
-    const Op op = ros1::op_of(header_at(offset));
+  // Nothing where there is no record.
+  std::optional<Op> op_at(std::uint64_t offset) const {
+    try {
+      return ros1::op_of(header_at(offset));
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
+  void note_record(Op op, std::uint64_t offset, std::uint64_t length, BagContent& content) const {
     if (op != Op::kConnection && op != Op::kChunk) return;
     if (length > kMaxChunkSize) throw InputError("a record that is too large");
     const std::string bytes = file().read(offset, length);
