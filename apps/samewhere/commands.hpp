@@ -18,6 +18,7 @@ void add_map_command(CLI::App& app);
 void add_optimize_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_train_command(CLI::App& app);
+void add_dds_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
 
 }  // namespace samewhere::app
