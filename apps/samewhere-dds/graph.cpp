@@ -1,6 +1,7 @@
 #include "graph.hpp"
 
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <utility>
 
@@ -43,12 +44,22 @@ std::string dds_type(const messages::MessageType& type) {
 
 std::string dds_topic(const std::string& name) { return "rt" + name; }
 
+// An image comes as hundreds of packets at once. CYCLONEDDS_URI, where it is set, has the last
+// word.
+int join(int domain) {
+  constexpr const char* kLargeBuffers =
+      "<CycloneDDS><Domain><Internal><SocketReceiveBufferSize max=\"16MB\"/></Internal></Domain>"
+      "</CycloneDDS>";
+  const auto id = static_cast<dds_domainid_t>(domain);
+  const std::string what = fmt::format("domain {} cannot be joined", domain);
+  if (std::getenv("CYCLONEDDS_URI") == nullptr) checked(dds_create_domain(id, kLargeBuffers), what);
+  return checked(dds_create_participant(id, nullptr, nullptr), what);
+}
+
 }  // namespace
 
 Graph::Graph(int domain)
-    : participant_(
-          checked(dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr),
-                  fmt::format("domain {} cannot be joined", domain))),
+    : participant_(join(domain)),
       waitset_(checked(dds_create_waitset(participant_), "no waitset")) {}
 
 Graph::~Graph() { dds_delete(participant_); }

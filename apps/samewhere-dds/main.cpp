@@ -96,6 +96,7 @@ class Inputs {
       : graph_(graph), names_(names), node_(node) {}
 
   void subscribe(const node::Config& config) {
+    is_reliable_ = config.is_reliable;
     images(node::kImageTopic, node::Stream::kFirst, config.is_compressed);
     infos(node::kCameraInfoTopic, node::Stream::kFirst);
     if (config.cameras == node::Cameras::kDepth)
@@ -125,7 +126,8 @@ class Inputs {
   }
 
   template <class Message>
-  void image(const std::string& name, const node::Quality& quality, node::Stream stream) {
+  void image(const std::string& name, node::Quality quality, node::Stream stream) {
+    quality.is_reliable = is_reliable_;
     take<Message>(name, quality, [stream](Message message) {
       return node::ImageIn{stream, std::move(message)};
     });
@@ -156,6 +158,7 @@ class Inputs {
   Graph& graph_;
   const node::TopicNames& names_;
   node::NodeThread& node_;
+  bool is_reliable_ = false;
 };
 
 int work(const Job& job) {

@@ -14,6 +14,7 @@ struct Config {
   Cameras cameras = Cameras::kMono;
   bool is_rectified = false;
   bool is_compressed = false;
+  bool is_reliable = false;
   double depth_units_per_m = 1000.0;
   double frame_rate_hz = 0.0;
   double pair_tolerance_s = 0.01;
@@ -37,6 +38,9 @@ inline void visit_images(Config& config, core::FieldVisitor& visit) {
         {.help = "images are the rectified ones, which P of camera_info describes"});
   visit("compressed", config.is_compressed,
         {.help = "camera images come as CompressedImage (JPEG or PNG)"});
+  visit("reliable_images", config.is_reliable,
+        {.help = "images are asked for reliably, for a network that loses packets; the camera's "
+                 "node has to offer it (ROS 2)"});
   visit("depth_units_per_m", config.depth_units_per_m,
         {.help = "units of depth 16UC1 per metre", .min = 0.001, .max = 1e6});
   visit(
