@@ -114,6 +114,7 @@ class Robot {
     qos.history().depth = 5;
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
+    qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0.1L);
     return publisher_->create_datawriter(topic(name, type), qos);
   }
   dds::DataReader* reader(const std::string& name, const messages::MessageType& type) {
