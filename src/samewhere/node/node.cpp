@@ -98,8 +98,9 @@ void Node::refused(const std::string& why) {
 }
 
 void Node::take_one(ImageIn& in) {
+  const Stream stream = in.stream;
   Picture picture = picture_of(std::move(in));
-  if (in.stream == Stream::kFirst) {
+  if (stream == Stream::kFirst) {
     pairing_.add_first(std::move(picture));
   } else {
     pairing_.add_second(std::move(picture));
