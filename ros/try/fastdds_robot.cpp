@@ -107,10 +107,11 @@ class Robot {
   static bool is_reliable() { return std::getenv("RELIABLE") != nullptr; }
 
   // Sensor data of ROS 2: best effort, keep last 5.
-  dds::DataWriter* writer(const std::string& name, const messages::MessageType& type) {
+  dds::DataWriter* writer(const std::string& name, const messages::MessageType& type,
+                          bool is_always_reliable) {
     dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-    qos.reliability().kind =
-        is_reliable() ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+    qos.reliability().kind = is_reliable() || is_always_reliable ? dds::RELIABLE_RELIABILITY_QOS
+                                                                 : dds::BEST_EFFORT_RELIABILITY_QOS;
     qos.history().depth = 5;
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
@@ -177,7 +178,7 @@ class Ear {
                 num_path_poses_, num_landmarks_);
     core::print("state:");
     for (const auto& value : state_) core::print(" {}={}", value.key, value.value);
-    core::print("\nan accepted loop: {}\n", example_);
+    core::print("\nan accepted loop: {}\nanswer to a command: {}\n", example_, answer_);
   }
   const core::Trajectory& trajectory() const { return trajectory_; }
 
@@ -193,6 +194,7 @@ class Ear {
   }
   void take_diagnostic(const messages::DiagnosticStatus& status) {
     if (status.name == "samewhere: state") state_ = status.values;
+    if (status.name == "samewhere: command") answer_ = status.message;
     if (status.name != "samewhere: loop candidate") return;
     ++num_verdicts_;
     if (!status.message.starts_with("accepted")) return;
@@ -209,6 +211,7 @@ class Ear {
   std::vector<messages::KeyValue> state_;
   std::string last_status_;
   std::string example_;
+  std::string answer_;
   std::size_t num_path_poses_ = 0;
   std::size_t num_landmarks_ = 0;
   int num_verdicts_ = 0;
@@ -218,12 +221,14 @@ class Ear {
 int play(const std::string& bag_path, const std::string& out) {
   Robot robot;
   Ear ear(robot);
+  dds::DataWriter* const commands =
+      robot.writer("/samewhere/command", messages::type_of<messages::String>(), true);
   const auto bag = bags::open_bag(bag_path);
   std::vector<int> topics;
   std::vector<dds::DataWriter*> writers;
   for (const bags::Topic& topic : bag->topics()) {
     topics.push_back(static_cast<int>(topics.size()));
-    writers.push_back(robot.writer(topic.name, *messages::find_message_type(topic.type)));
+    writers.push_back(robot.writer(topic.name, *messages::find_message_type(topic.type), false));
   }
   std::this_thread::sleep_for(std::chrono::seconds(3));  // discovery
   bag->start(topics);
@@ -240,6 +245,9 @@ int play(const std::string& bag_path, const std::string& out) {
     ++num_sent;
     ear.receive();
   }
+  std::string command =
+      messages::write_message(messages::String{"save_map " + out + ".sw"}, messages::Layout::kCdr);
+  commands->write(&command);
   for (int i = 0; i < 40; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     ear.receive();
