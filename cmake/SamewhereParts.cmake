@@ -2,6 +2,7 @@
 #
 # SAMEWHERE_TWIN=OFF: no Embree. twin:PRESET and `samewhere twin` are refused with one line.
 # SAMEWHERE_DENSE=OFF: no OctoMap. `samewhere dense` is refused with one line.
+# SAMEWHERE_DDS=OFF, or no Cyclone DDS installed: `samewhere dds` is refused with one line.
 # Of a pair of files x.cpp and x_without.cpp one is compiled; tests that need what is left out are
 # left out, too.
 
@@ -25,6 +26,14 @@ if(SAMEWHERE_DENSE)
   set(SAMEWHERE_OCTOMAP octomap)
 endif()
 
+if(SAMEWHERE_DDS)
+  find_package(CycloneDDS 0.10 QUIET)
+  if(NOT CycloneDDS_FOUND)
+    message(STATUS "Found no Cyclone DDS of version 0.10 or newer: without `samewhere dds`. "
+                   "On Debian and Ubuntu it is the package cyclonedds-dev.")
+  endif()
+endif()
+
 # samewhere_leave_out_tests(SOURCES): takes the tests of parts that are left out from the list
 # SOURCES, and those of a build without a part (x_without_test.cpp) where the part is there.
 function(samewhere_leave_out_tests SOURCES)
@@ -37,7 +46,7 @@ function(samewhere_leave_out_tests SOURCES)
     list(FILTER sources EXCLUDE REGEX "/twin/[a-z_/]*_test\\.cpp$")
     list(APPEND sources ${without})
     list(FILTER sources EXCLUDE REGEX "/(pipeline/(disturbance|relocalization|slam)|run/recognition)_test\\.cpp$")
-    list(FILTER sources EXCLUDE REGEX "/library/[a-z_]*_test\\.cpp$|^examples/examples_test\\.cpp$")
+    list(FILTER sources EXCLUDE REGEX "/(library/[a-z_]*|node/(node|transforms))_test\\.cpp$|^examples/examples_test\\.cpp$")
     list(FILTER sources EXCLUDE REGEX "^cli/(commands|dense|known_map|ledger|map|twin)_test\\.cpp$")
     list(FILTER sources EXCLUDE REGEX "^(corridor/corridor|stereo/stereo|threads/threads)_test\\.cpp$")
     list(FILTER sources EXCLUDE REGEX "^(carried_pixels|shared_surface)_test\\.cpp$")

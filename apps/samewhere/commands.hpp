@@ -21,6 +21,7 @@ void add_calibrate_command(CLI::App& app);
 void add_train_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_dds_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
 
 }  // namespace samewhere::app

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   add_config_command(app);
   add_calibrate_command(app);
   add_train_command(app);
+  add_dds_command(app);
   add_doctor_command(app);
   refuse_empty_values(app);
   try {

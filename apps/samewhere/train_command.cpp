@@ -1,15 +1,12 @@
-#include <cerrno>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "commands.hpp"
 #include "options.hpp"
+#include "start_program.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
@@ -18,22 +15,6 @@
 
 namespace samewhere::app {
 namespace {
-
-// Becomes the training program, which lies beside this one where it was built: it needs libtorch,
-// which is optional.
-[[noreturn]] void start_training(std::vector<std::string> arguments) {
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::string program = (here / "samewhere-train").string();
-  arguments.insert(arguments.begin(), program);
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  execv(program.c_str(), argv.data());
-  const int error = errno;
-  throw core::InputError(
-      fmt::format("train: {} cannot be started ({}); `./run train` installs libtorch and builds it",
-                  program, std::generic_category().message(error)));
-}
 
 struct WordsCommand {
   run::VocabularyTraining training;
@@ -102,7 +83,9 @@ void add_train_command(CLI::App& app) {
   sub->prefix_command();
   add_words_command(*sub);
   sub->callback([sub] {
-    if (sub->get_subcommands().empty()) start_training(sub->remaining());
+    if (!sub->get_subcommands().empty()) return;
+    start_program("samewhere-train", sub->remaining(), "train",
+                  "`./run train` installs libtorch and builds it");
   });
 }
 

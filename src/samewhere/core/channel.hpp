@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -40,6 +41,25 @@ class Channel {
     messages_.push_back(std::move(message));
     changed_.notify_all();
     return true;
+  }
+
+  // Never waits. Of the messages that are alike at most `limit` stay: the oldest makes room.
+  // Returns how many were dropped: this one if the channel is full or closed.
+  template <class IsAlike>
+  std::size_t send_limited(T message, std::size_t limit, const IsAlike& is_alike) {
+    const std::lock_guard lock(mutex_);
+    if (is_closed_) return 1;
+    std::size_t num_dropped = 0;
+    const auto num_alike =
+        is_alike(message) ? std::count_if(messages_.begin(), messages_.end(), is_alike) : 0;
+    if (num_alike > 0 && static_cast<std::size_t>(num_alike) >= limit) {
+      messages_.erase(std::find_if(messages_.begin(), messages_.end(), is_alike));
+      ++num_dropped;
+    }
+    if (messages_.size() >= capacity_) return num_dropped + 1;
+    messages_.push_back(std::move(message));
+    changed_.notify_all();
+    return num_dropped;
   }
 
   // Waits so long, or until the channel is closed: then false. For a writer whose message is not

@@ -179,6 +179,20 @@ TEST(StageThread, AnExceptionEndsTheNeighboursAndComesOutOfJoin) {
   EXPECT_THROW(stage.join(), InputError);
 }
 
+TEST(Channel, OldestOfWhatIsAlikeMakesRoomForTheNewest) {
+  Channel<int> channel(5);
+  const auto is_even = [](int x) { return x % 2 == 0; };
+  for (const int x : {1, 2, 4}) EXPECT_EQ(channel.send_limited(x, 2, is_even), 0U);
+  EXPECT_EQ(channel.send_limited(6, 2, is_even), 1U) << "2 makes room";
+  EXPECT_EQ(channel.send_limited(3, 2, is_even), 0U);
+  EXPECT_EQ(channel.send_limited(5, 2, is_even), 0U);
+  EXPECT_EQ(channel.send_limited(7, 2, is_even), 1U) << "the channel is full";
+  channel.close();
+  EXPECT_EQ(channel.send_limited(8, 2, is_even), 1U) << "the channel is closed";
+  for (const int x : {1, 4, 6, 3, 5}) EXPECT_EQ(channel.receive(), x);
+  EXPECT_FALSE(channel.receive());
+}
+
 TEST(StageThread, DestructionDoesNotWaitForAMessageThatIsNeverSent) {
   Channel<int> in(1);
   Channel<int> out(1);

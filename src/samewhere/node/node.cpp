@@ -1,0 +1,365 @@
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/core/printable.hpp>
+#include <samewhere/input/message_image.hpp>
+#include <samewhere/node/node.hpp>
+#include <samewhere/node/outputs.hpp>
+
+namespace samewhere::node {
+namespace {
+
+using messages::DiagnosticStatus;
+
+messages::Header header_of(const std::string& frame, double stamp_s) {
+  return {.stamp = messages::time_of(stamp_s), .frame_id = frame};
+}
+
+Picture picture_of(ImageIn in) {
+  Picture picture;
+  std::visit(
+      [&](const auto& message) {
+        picture.stamp_s = messages::seconds(message.header.stamp);
+        picture.frame_id = message.header.frame_id;
+      },
+      in.message);
+  picture.message = std::move(in.message);
+  return picture;
+}
+
+cv::Mat image_from(const Picture& picture, const std::string& name) {
+  return std::visit([&](const auto& message) { return input::image_of(message, name); },
+                    picture.message);
+}
+
+cv::Mat depth_from(const Picture& picture, double units_per_m) {
+  return std::visit(
+      [&](const auto& message) { return input::depth_of(message, "depth", units_per_m); },
+      picture.message);
+}
+
+Image view_of(const cv::Mat& image) {
+  const PixelFormat format = image.type() == CV_32FC1  ? PixelFormat::kDepthFloat
+                             : image.type() == CV_8UC3 ? PixelFormat::kBgr8
+                                                       : PixelFormat::kGray8;
+  return {.data = image.data,
+          .width_px = image.cols,
+          .height_px = image.rows,
+          .format = format,
+          .stride_bytes = image.step};
+}
+
+Options options_with(Options options, bool never_wait) {
+  options.never_wait = never_wait && options.threads;
+  options.on_event = nullptr;
+  return options;
+}
+
+std::uint8_t level_of(const std::optional<Tracked>& newest) {
+  const bool is_well = newest && newest->has_pose();
+  return is_well ? DiagnosticStatus::kOk : DiagnosticStatus::kWarn;
+}
+
+}  // namespace
+
+Node::Node(const Config& config, const Options& options, Publisher& publisher)
+    : config_(config),
+      options_(options_with(options, config.never_wait)),
+      publisher_(publisher),
+      pairing_(config.cameras != Cameras::kMono, config.pair_tolerance_s,
+               static_cast<std::size_t>(config.queue_frames)),
+      startup_(config) {
+  set_status("waiting for images");
+}
+
+Node::~Node() = default;
+
+void Node::take(Incoming incoming) {
+  try {
+    std::visit([this](auto& in) { take_one(in); }, incoming);
+  } catch (const std::exception& error) {
+    refused(error.what());
+  }
+}
+
+Node::Counts Node::counts() const {
+  Counts counts = counts_;
+  counts.num_dropped += pairing_.num_dropped();
+  return counts;
+}
+
+void Node::refused(const std::string& why) {
+  ++counts_.num_refused;
+  counts_.last_refusal = core::printable_line(why, core::kMaxMessage);
+}
+
+void Node::take_one(ImageIn& in) {
+  const Stream stream = in.stream;
+  Picture picture = picture_of(std::move(in));
+  if (stream == Stream::kFirst) {
+    pairing_.add_first(std::move(picture));
+  } else {
+    pairing_.add_second(std::move(picture));
+  }
+  while (std::optional<FrameSet> frame = pairing_.next()) use(std::move(*frame));
+}
+
+void Node::take_one(const CameraInfoIn& in) {
+  if (startup_) startup_->take_info(in.stream, in.message);
+}
+
+void Node::take_one(const OdometryIn& in) {
+  const messages::Odometry& odometry = in.message;
+  if (frame_name(odometry.header.frame_id) != config_.odom_frame ||
+      frame_name(odometry.child_frame_id) != config_.base_frame) {
+    throw core::InputError(fmt::format(
+        "odometry from '{}' to '{}'; expected '{}' to '{}' (node.odom_frame, node.base_frame)",
+        odometry.header.frame_id, odometry.child_frame_id, config_.odom_frame, config_.base_frame));
+  }
+  take_odometry(messages::seconds(odometry.header.stamp), odometry.pose.pose.position,
+                odometry.pose.pose.orientation);
+}
+
+void Node::take_one(const TransformsIn& in) {
+  if (in.is_static) {
+    const int num_unusable = static_transforms_.take(in.message);
+    if (num_unusable > 0)
+      refused(fmt::format("/tf_static: {} transforms are not rigid or close a ring", num_unusable));
+    return;
+  }
+  if (!config_.odometry_from_tf) return;
+  for (const messages::TransformStamped& transform : in.message.transforms) {
+    if (frame_name(transform.header.frame_id) == config_.odom_frame &&
+        frame_name(transform.child_frame_id) == config_.base_frame) {
+      take_odometry(messages::seconds(transform.header.stamp), transform.transform.translation,
+                    transform.transform.rotation);
+    }
+  }
+}
+
+void Node::take_odometry(double stamp_s, const messages::Vector3& position,
+                         const messages::Quaternion& rotation) {
+  const std::optional<Pose> pose = pose_from(position, rotation);
+  if (!pose) throw core::InputError("odometry: is not finite or no rotation");
+  if (setup_ && setup_->base_frame != config_.base_frame) {
+    throw core::InputError(
+        fmt::format("odometry of '{}', which /tf_static did not connect with "
+                    "the camera",
+                    config_.base_frame));
+  }
+  odometry_.add(stamp_s, *pose);
+  publish_corrected_odometry();
+}
+
+void Node::take_one(const CommandIn& in) {
+  const Answer answer = execute(in.command);
+  if (!answer.is_done) refused(answer.text);
+  if (in.answer) in.answer->send_newest(answer);
+  const double stamp_s = newest_ ? newest_->stamp_s : 0.0;
+  publisher_.diagnostics(
+      {.header = header_of("", stamp_s),
+       .status = {{.level = answer.is_done ? DiagnosticStatus::kOk : DiagnosticStatus::kError,
+                   .name = "samewhere: command",
+                   .message = answer.text}}});
+}
+
+void Node::take_one(const Tick& /*tick*/) { publish_state(); }
+
+void Node::use(FrameSet frame) {
+  if (slam_) return track(frame);
+  counts_.num_dropped += startup_->add(std::move(frame));
+  if (why_not_started_.empty()) try_to_start();
+}
+
+void Node::try_to_start() {
+  try {
+    const auto setup = startup_->setup(static_transforms_);
+    if (!setup) return set_status(setup.error());
+    slam_ = std::make_unique<Slam>(setup->calibration, options_);
+    setup_ = *setup;
+  } catch (const std::exception& error) {
+    why_not_started_ = core::printable_line(error.what(), core::kMaxMessage);
+    refused(why_not_started_);
+    return set_status("cannot start");
+  }
+  if (is_paused_) slam_->pause_mapping();
+  frames_.begin_session();
+  std::deque<FrameSet> frames = startup_->take_frames();
+  startup_.reset();
+  for (const FrameSet& waiting : frames) track(waiting);
+}
+
+void Node::track(const FrameSet& frame) {
+  std::vector<cv::Mat> images = {image_from(frame.first, "image")};
+  Frame given{.stamp_s = frame.first.stamp_s, .images = {view_of(images[0])}, .depth = {}};
+  if (config_.cameras == Cameras::kStereo) {
+    images.push_back(image_from(*frame.second, "right/image"));
+    given.images.push_back(view_of(images[1]));
+  } else if (config_.cameras == Cameras::kDepth) {
+    images.push_back(depth_from(*frame.second, config_.depth_units_per_m));
+    given.depth = view_of(images[1]);
+  }
+  newest_ = slam_->track(given);
+  ++counts_.num_frames;
+  frames_.update(*newest_, setup_->camera_from_base);
+  publish_frames(*newest_);
+  publish_events();
+  set_status(status_name(newest_->status));
+  publish_map_if_due(*newest_);
+}
+
+void Node::publish_frames(const Tracked& tracked) {
+  if (tracked.has_pose()) {
+    const Pose map_from_base = frames_.map_from_base();
+    const Pose camera_from_body = setup_->calibration.cameras[0].body_from_camera.inverse();
+    const Pose base_from_body = setup_->camera_from_base.inverse() * camera_from_body;
+    publisher_.pose(pose_message(header_of(config_.map_frame, tracked.stamp_s), map_from_base,
+                                 (map_from_base * base_from_body).linear(), tracked.covariance));
+  }
+  if (has_odometry()) {
+    waiting_for_odometry_ = tracked;
+    return publish_corrected_odometry();
+  }
+  publisher_.transforms({{transform_message(config_.map_frame, config_.odom_frame,
+                                            tracked.stamp_s + config_.map_to_odom_postdate_s,
+                                            frames_.map_from_odom()),
+                          transform_message(config_.odom_frame, setup_->base_frame, tracked.stamp_s,
+                                            frames_.odom_from_base())}});
+}
+
+void Node::publish_corrected_odometry() {
+  if (!waiting_for_odometry_) return;
+  const double stamp_s = waiting_for_odometry_->stamp_s;
+  const std::optional<Pose> odom_from_base = odometry_.at(stamp_s);
+  if (!odom_from_base) return;
+  if (waiting_for_odometry_->has_pose()) {
+    frames_.use_odometry(*odom_from_base);
+    map_from_given_odom_ = frames_.map_from_odom();
+  }
+  waiting_for_odometry_.reset();
+  publisher_.transforms(
+      {{transform_message(config_.map_frame, config_.odom_frame,
+                          stamp_s + config_.map_to_odom_postdate_s, map_from_given_odom_)}});
+}
+
+void Node::publish_map_if_due(const Tracked& tracked) {
+  const double since_s = tracked.stamp_s - map_told_s_.value_or(-INFINITY);
+  if (since_s >= 0.0 && since_s < config_.map_period_s) return;
+  map_told_s_ = tracked.stamp_s;
+  publish_state();
+  const std::shared_ptr<const Map> map = slam_->map();
+  if (map->version() == map_version_told_) return;
+  map_version_told_ = map->version();
+  const messages::Header header = header_of(config_.map_frame, tracked.stamp_s);
+  publisher_.path(path_message(header, *map, setup_->camera_from_base));
+  publisher_.landmarks(
+      landmarks_message(header, *map, static_cast<std::size_t>(config_.max_landmarks)));
+}
+
+void Node::publish_events() {
+  messages::DiagnosticArray array{.header = header_of("", newest_ ? newest_->stamp_s : 0.0)};
+  for (const Event& event : slam_->take_events())
+    if (auto status = event_message(event)) array.status.push_back(std::move(*status));
+  if (!array.status.empty()) publisher_.diagnostics(array);
+}
+
+void Node::publish_state() {
+  const Counts so_far = counts();
+  DiagnosticStatus state{
+      .level = why_not_started_.empty() ? level_of(newest_) : DiagnosticStatus::kError,
+      .name = "samewhere: state",
+      .message = why_not_started_.empty() ? status_ : why_not_started_,
+      .values = {{"frames", fmt::format("{}", so_far.num_frames)},
+                 {"images_dropped", fmt::format("{}", so_far.num_dropped)},
+                 {"messages_refused", fmt::format("{}", so_far.num_refused)},
+                 {"last_refusal", so_far.last_refusal},
+                 {"mapping", is_paused_ ? "paused" : "on"}}};
+  if (slam_) {
+    const std::shared_ptr<const Map> map = slam_->map();
+    state.values.push_back({"keyframes", fmt::format("{}", map->num_keyframes())});
+    state.values.push_back({"scale", map->is_metric() ? "metres" : "unknown"});
+    state.values.push_back({"base_frame", setup_->base_frame});
+  }
+  if (newest_) state.values.push_back({"inliers", fmt::format("{}", newest_->num_inliers)});
+  publisher_.diagnostics(
+      {.header = header_of("", newest_ ? newest_->stamp_s : 0.0), .status = {state}});
+}
+
+void Node::set_status(const std::string& status) {
+  if (status == status_) return;
+  status_ = status;
+  publisher_.status({.data = status});
+}
+
+Answer Node::execute(const Command& command) {
+  try {
+    return {.is_done = true, .text = carry_out(command)};
+  } catch (const std::exception& error) {
+    return {.is_done = false, .text = core::printable_line(error.what(), core::kMaxMessage)};
+  }
+}
+
+std::string Node::carry_out(const Command& command) {
+  switch (command.kind) {
+    case CommandKind::kSaveMap:
+      if (!slam_) throw core::InputError("save_map: there is no map yet (" + status_ + ")");
+      slam_->save(command.file);
+      return "saved " + command.file.string();
+    case CommandKind::kLoadMap:
+      return begin_in(command.file, MapUse::kExtend);
+    case CommandKind::kLocalize:
+      return begin_in(command.file, MapUse::kLocalize);
+    case CommandKind::kReset:
+      return begin_in({}, MapUse::kExtend);
+    case CommandKind::kPause:
+    case CommandKind::kResume:
+      break;
+  }
+  const bool is_pause = command.kind == CommandKind::kPause;
+  if (slam_ && is_pause) slam_->pause_mapping();
+  if (slam_ && !is_pause) slam_->resume_mapping();
+  is_paused_ = is_pause;
+  return is_pause ? "mapping is paused" : "mapping goes on";
+}
+
+std::string Node::begin_in(const std::filesystem::path& map, MapUse use) {
+  if (!slam_) {
+    options_.map = map;
+    options_.map_use = use;
+    why_not_started_.clear();
+  } else if (map.empty()) {
+    slam_->reset();
+  } else {
+    slam_->load(map, use);
+  }
+  frames_.begin_session();
+  is_paused_ = false;
+  newest_.reset();
+  waiting_for_odometry_.reset();
+  map_told_s_.reset();
+  map_version_told_ = 0;
+  return map.empty() ? "a new session with an empty map"
+                     : "a new session in " + map.string() +
+                           (use == MapUse::kLocalize ? ", which stays as it is" : "");
+}
+
+std::vector<StampedPose> Node::finish() {
+  if (!slam_ || slam_->is_finished()) return {};
+  std::vector<StampedPose> trajectory;
+  try {
+    slam_->finish();
+    publish_events();
+    trajectory = slam_->trajectory();
+    map_told_s_.reset();
+    if (newest_) publish_map_if_due(*newest_);
+  } catch (const std::exception& error) {
+    refused(error.what());
+  }
+  return trajectory;
+}
+
+}  // namespace samewhere::node

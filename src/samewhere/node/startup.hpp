@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include <samewhere/core/result.hpp>
+#include <samewhere/messages/messages.hpp>
+#include <samewhere/node/config.hpp>
+#include <samewhere/node/incoming.hpp>
+#include <samewhere/node/pairing.hpp>
+#include <samewhere/node/transforms.hpp>
+#include <samewhere/types.hpp>
+
+namespace samewhere::node {
+
+// The sensors, and the frame of the robot that odometry and map refer to.
+struct Setup {
+  Calibration calibration;
+  std::string base_frame;
+  Pose camera_from_base = Pose::Identity();
+};
+
+// What comes before the first frame is tracked: holds the first frames until calibration, frame
+// rate and the camera's place on the robot are known.
+//
+// If /tf_static connects node.base_frame with the camera, that is the base. If it does not within
+// node.tf_wait_s, the base is the top of the tree that holds the camera, or the camera itself.
+class Startup {
+ public:
+  explicit Startup(Config config);
+
+  // The first of each stream with a calibration counts. Throws core::InputError on one that is not
+  // usable.
+  void take_info(Stream stream, const messages::CameraInfo& info);
+  // Returns how many frames it dropped for it: it holds a few.
+  std::uint64_t add(FrameSet frame);
+  // All that is known, or what is waited for. Throws core::InputError if the calibrations do not
+  // make a stereo pair.
+  Result<Setup, std::string> setup(const StaticTransforms& transforms) const;
+  std::deque<FrameSet> take_frames();
+
+ private:
+  struct CalibratedCamera {
+    Camera camera;
+    messages::CameraInfo info;
+  };
+
+  std::optional<double> frame_rate_hz() const;
+  Result<Setup, std::string> place_of_camera(const StaticTransforms& transforms) const;
+  Pose left_from_right() const;
+
+  Config config_;
+  std::optional<CalibratedCamera> first_;
+  std::optional<CalibratedCamera> second_;
+  std::deque<FrameSet> frames_;
+  std::optional<double> first_stamp_s_;
+};
+
+}  // namespace samewhere::node
