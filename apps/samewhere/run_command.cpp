@@ -253,6 +253,18 @@ void add_odometry_option(CLI::App& sub, RunCommand& command) {
                  "odometry.sensor names its drift");
 }
 
+void add_topics_option(CLI::App& sub, RunCommand& command) {
+  sub.add_option_function<std::string>(
+         "--topics",
+         [&command](const std::string& topics) {
+           command.config.assignments.push_back("input.topics=" + topics);
+         },
+         "topics of a bag by their roles: \"color=/a depth=/b\"; roles: color, right, depth, "
+         "camera_info, right_camera_info, imu, odometry, truth; `depth=none` leaves one out; "
+         "`samewhere info` lists topics")
+      ->type_name("ROLE=TOPIC");
+}
+
 CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, Work work,
                              int& exit_code) {
   auto command = std::make_shared<RunCommand>();
@@ -275,15 +287,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   sub->add_flag("--realtime", command->is_realtime,
                 "process a camera or a video in real time: always the newest frame, others are "
                 "dropped and counted; results differ from run to run");
-  sub->add_option_function<std::string>(
-         "--topics",
-         [command](const std::string& topics) {
-           command->config.assignments.push_back("input.topics=" + topics);
-         },
-         "topics of a bag by their roles: \"color=/a depth=/b\"; roles: color, right, depth, "
-         "camera_info, right_camera_info, imu, odometry, truth; `depth=none` leaves one out; "
-         "`samewhere info` lists topics")
-      ->type_name("ROLE=TOPIC");
+  add_topics_option(*sub, *command);
   add_config_options(*sub, command->config);
   add_prior_option(*sub, *command);
   add_json_option(*sub, command->figures);

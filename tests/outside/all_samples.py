@@ -28,6 +28,13 @@ def make_samples(lab, root):
             raise SystemExit(f"no sample of a finished run: {outcome}")
     shutil.copy(os.path.join(long_walk, "groundtruth.txt"), os.path.join(made["run"], "truth.tum"))
     samples.write(made["loops"], "walk.txt", "".join(f"{i}.png 0 0\n" for i in range(80)))
+    made["bags"] = os.path.join(root, "bags")
+    os.makedirs(made["bags"])
+    for name, compression in (("walk.mcap", "zstd"), ("walk.db3", "none"), ("walk.bag", "lz4")):
+        outcome = lab.run("convert", made["tum"], os.path.join(made["bags"], name), "--quiet",
+                          "--compression", compression, cwd=root, timeout_s=60)
+        if outcome.exit != 0:
+            raise SystemExit(f"no sample of a bag: {outcome}")
     made["tum+extras"] = os.path.join(root, "extras")
     special_files.make_extras(made["tum+extras"], made["tum"], made["run"],
                               os.path.join(REPOSITORY, "models"))
