@@ -168,7 +168,7 @@ TEST(Bag, AChunkThatClaimsTooMuchIsRefused) {
 // 64 GB without a disk for them: nothing is read twice, and no memory is taken.
 TEST(Bag, ASparseFileIsToldAtOnce) {
   const BagFolder folder;
-  for (const std::string magic : {std::string(mcap::kMagic), std::string("#ROSBAG V2.0\n")}) {
+  for (const std::string_view magic : {mcap::kMagic, std::string_view("#ROSBAG V2.0\n")}) {
     core::write_file(folder.at("sparse"), magic);
     std::filesystem::resize_file(folder.at("sparse"), std::uintmax_t{64} << 30);
     const auto bag = open_bag(folder.at("sparse"));

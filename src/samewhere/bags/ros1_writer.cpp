@@ -15,7 +15,7 @@ namespace {
 using ros1::HeaderWriter;
 using ros1::Op;
 
-constexpr std::size_t kChunkSizeOfRos1 = 768 * 1024;  // rosbag's own
+constexpr std::size_t kChunkSizeOfRos1 = std::size_t{768} * 1024;  // rosbag's own
 
 class Ros1Writer : public BagWriter {
  public:

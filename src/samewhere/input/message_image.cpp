@@ -165,6 +165,23 @@ bool is_without_distortion(const messages::CameraInfo& info) {
   return std::all_of(info.d.begin(), info.d.end(), [](double value) { return value == 0.0; });
 }
 
+struct DistortionModel {
+  std::string name;
+  std::vector<double> d;
+};
+
+DistortionModel distortion_of(const core::PinholeRadtan& camera) {
+  if (camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0)
+    return {
+        "rational_polynomial",
+        {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3, camera.k4, camera.k5, camera.k6}};
+  return {"plumb_bob", {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}};
+}
+
+DistortionModel distortion_of(const core::KannalaBrandt& camera) {
+  return {"equidistant", {camera.k1, camera.k2, camera.k3, camera.k4}};
+}
+
 }  // namespace
 
 cv::Mat image_of(const messages::Image& message, const std::string& name) {
@@ -241,6 +258,23 @@ std::optional<core::Camera> camera_of(const messages::CameraInfo& info, bool is_
   if (const auto fault = geometry::fault_of(camera))
     throw InputError(fmt::format("{}: is no calibration: {}", name, *fault));
   return camera;
+}
+
+messages::CameraInfo camera_info_of(const core::Camera& camera) {
+  return std::visit(
+      [](const auto& model) {
+        auto [name, d] = distortion_of(model);
+        messages::CameraInfo info;
+        info.width = static_cast<std::uint32_t>(model.width_px);
+        info.height = static_cast<std::uint32_t>(model.height_px);
+        info.distortion_model = std::move(name);
+        info.d = std::move(d);
+        info.k = {model.fx_px, 0, model.cx_px, 0, model.fy_px, model.cy_px, 0, 0, 1};
+        info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        info.p = {model.fx_px, 0, model.cx_px, 0, 0, model.fy_px, model.cy_px, 0, 0, 0, 1, 0};
+        return info;
+      },
+      camera);
 }
 
 }  // namespace samewhere::input

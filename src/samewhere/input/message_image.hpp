@@ -40,4 +40,7 @@ cv::Mat depth_of(const messages::CompressedImage& message, const std::string& na
 std::optional<core::Camera> camera_of(const messages::CameraInfo& info, bool is_rectified,
                                       const std::string& name);
 
+// The calibration of a camera that is not rectified as a message, without its header.
+messages::CameraInfo camera_info_of(const core::Camera& camera);
+
 }  // namespace samewhere::input

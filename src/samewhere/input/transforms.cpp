@@ -37,6 +37,12 @@ core::Rigid3 rigid_of(const messages::Pose& pose) {
   return rigid_of(pose.position, pose.orientation);
 }
 
+messages::Transform transform_of(const core::Rigid3& pose) {
+  const auto& [rotation, translation] = pose;
+  return {.translation = {translation.x(), translation.y(), translation.z()},
+          .rotation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
+}
+
 void Transforms::add(const messages::TransformStamped& transform, bool is_static) {
   core::Rigid3 parent_from_child = rigid_of(transform.transform);
   if (!is_pose(parent_from_child)) return;

@@ -14,6 +14,7 @@ namespace samewhere::input {
 
 core::Rigid3 rigid_of(const messages::Transform& transform);
 core::Rigid3 rigid_of(const messages::Pose& pose);
+messages::Transform transform_of(const core::Rigid3& pose);
 
 // The frames of a recording: which hangs on which, fixed (/tf_static) or moving (/tf).
 class Transforms {

@@ -10,6 +10,8 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/nanoseconds.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/input/message_image.hpp>
+#include <samewhere/input/transforms.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/run/bag_export.hpp>
 
@@ -24,48 +26,8 @@ constexpr const char* kRightFrame = "right_camera_optical_frame";
 constexpr const char* kImuFrame = "imu_frame";
 constexpr const char* kWorldFrame = "world";
 
-messages::Transform transform_of(const core::Rigid3& pose) {
-  const auto& [rotation, translation] = pose;
-  return {.translation = {translation.x(), translation.y(), translation.z()},
-          .rotation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
-}
-
 messages::Header header_of(double stamp_s, const char* frame) {
   return {.stamp = messages::time_of(stamp_s), .frame_id = frame};
-}
-
-struct CameraModel {
-  std::string name;
-  std::vector<double> d;
-};
-
-CameraModel model_of(const core::PinholeRadtan& camera) {
-  if (camera.k4 != 0.0 || camera.k5 != 0.0 || camera.k6 != 0.0)
-    return {
-        "rational_polynomial",
-        {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3, camera.k4, camera.k5, camera.k6}};
-  return {"plumb_bob", {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}};
-}
-
-CameraModel model_of(const core::KannalaBrandt& camera) {
-  return {"equidistant", {camera.k1, camera.k2, camera.k3, camera.k4}};
-}
-
-messages::CameraInfo info_of(const core::Camera& camera) {
-  return std::visit(
-      [](const auto& model) {
-        auto [name, d] = model_of(model);
-        messages::CameraInfo info;
-        info.width = static_cast<std::uint32_t>(model.width_px);
-        info.height = static_cast<std::uint32_t>(model.height_px);
-        info.distortion_model = std::move(name);
-        info.d = std::move(d);
-        info.k = {model.fx_px, 0, model.cx_px, 0, model.fy_px, model.cy_px, 0, 0, 1};
-        info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        info.p = {model.fx_px, 0, model.cx_px, 0, 0, model.fy_px, model.cy_px, 0, 0, 0, 1, 0};
-        return info;
-      },
-      camera);
 }
 
 messages::Image image_of(const cv::Mat& pixels, const char* encoding) {
@@ -137,7 +99,7 @@ class BagRecording {
     const auto add = [&](const char* child, const core::Rigid3& camera_from_child) {
       fixed.transforms.push_back({.header = header_of(frame.stamp_s, kCameraFrame),
                                   .child_frame_id = child,
-                                  .transform = transform_of(camera_from_child)});
+                                  .transform = input::transform_of(camera_from_child)});
     };
     const core::Rig& rig = *frame.rig;
     if (rig.is_calibrated() && cameras_.size() > 1 && rig.cameras.size() > 1)
@@ -152,7 +114,7 @@ class BagRecording {
   void write_truth_until(double stamp_s) {
     for (; next_truth_ < truth_.size() && truth_[next_truth_].stamp_s <= stamp_s; ++next_truth_) {
       const core::StampedPose& pose = truth_[next_truth_];
-      const messages::Transform transform = transform_of(pose.world_from_camera);
+      const messages::Transform transform = input::transform_of(pose.world_from_camera);
       messages::Odometry odometry;
       odometry.header = header_of(pose.stamp_s, kWorldFrame);
       odometry.child_frame_id = kCameraFrame;
@@ -168,7 +130,7 @@ class BagRecording {
       const messages::Header header = header_of(frame.stamp_s, cameras_[i].frame);
       write_picture(cameras_[i].image, now_ns, header, frame.images[i]);
       if (cameras_[i].info < 0) continue;
-      messages::CameraInfo info = info_of(frame.rig->cameras[i]);
+      messages::CameraInfo info = input::camera_info_of(frame.rig->cameras[i]);
       info.header = header;
       bag_.write_message(cameras_[i].info, now_ns, info);
     }

@@ -12,6 +12,8 @@
 #include <samewhere/bags/bag.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/nanoseconds.hpp>
+#include <samewhere/input/message_image.hpp>
+#include <samewhere/input/transforms.hpp>
 #include <samewhere/pipeline/slam.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/run/export_mcap.hpp>
@@ -31,12 +33,6 @@ core::Rigid3 base_from_optical() {
   Eigen::Matrix3d rotation;
   rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return {.rotation = Eigen::Quaterniond(rotation)};
-}
-
-messages::Transform message_transform(const core::Rigid3& pose) {
-  const Eigen::Quaterniond& q = pose.rotation;
-  const Eigen::Vector3d& t = pose.translation;
-  return {.translation = {t.x(), t.y(), t.z()}, .rotation = {q.x(), q.y(), q.z(), q.w()}};
 }
 
 messages::Header stamped_header(std::int64_t time_ns, const char* frame) {
@@ -138,7 +134,7 @@ class McapOfRun {
     const messages::Header in_map = stamped_header(first_ns(), kMapFrame);
     bag_->write_message(tf_static_, first_ns(),
                         messages::TFMessage{{{stamped_header(first_ns(), kBaseFrame), kOpticalFrame,
-                                              message_transform(base_from_optical())}}});
+                                              input::transform_of(base_from_optical())}}});
     messages::Path path{in_map, {}};
     for (const core::StampedPose& pose : trajectory_) path.poses.push_back(message_of(pose));
     bag_->write_message(path_, first_ns(), path);
@@ -150,7 +146,7 @@ class McapOfRun {
   }
 
   messages::PoseStamped message_of(const core::StampedPose& pose) const {
-    const messages::Transform transform = message_transform(map_from_base(pose));
+    const messages::Transform transform = input::transform_of(map_from_base(pose));
     return {stamped_header(core::nanoseconds_of(pose.stamp_s), kMapFrame),
             {transform.translation, transform.rotation}};
   }
@@ -159,7 +155,7 @@ class McapOfRun {
     const std::int64_t time_ns = core::nanoseconds_of(pose.stamp_s);
     bag_->write_message(tf_, time_ns,
                         messages::TFMessage{{{stamped_header(time_ns, kMapFrame), kBaseFrame,
-                                              message_transform(map_from_base(pose))}}});
+                                              input::transform_of(map_from_base(pose))}}});
     bag_->write_message(pose_, time_ns, message_of(pose));
   }
 
@@ -196,16 +192,9 @@ class McapOfRun {
         picture_, time_ns,
         write_message(messages::CompressedImage{header, "jpeg", {jpeg.begin(), jpeg.end()}},
                       bag_->layout()));
-    const core::PinholeRadtan camera = camera_of_pictures(keyframe.view, {picture.size(), false});
-    messages::CameraInfo info;
+    messages::CameraInfo info =
+        input::camera_info_of(camera_of_pictures(keyframe.view, {picture.size(), false}));
     info.header = header;
-    info.width = static_cast<std::uint32_t>(camera.width_px);
-    info.height = static_cast<std::uint32_t>(camera.height_px);
-    info.distortion_model = "plumb_bob";
-    info.d = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
-    info.k = {camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1};
-    info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    info.p = {camera.fx_px, 0, camera.cx_px, 0, 0, camera.fy_px, camera.cy_px, 0, 0, 0, 1, 0};
     wait_for_turn(info_, time_ns, write_message(info, bag_->layout()));
     ++counts_.num_pictures;
   }
