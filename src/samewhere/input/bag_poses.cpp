@@ -1,3 +1,4 @@
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -70,6 +71,26 @@ std::string frame_of_pictures(bags::BagReader& bag) {
   return messages::read_message<messages::Image>(message->bytes, layout).header.frame_id;
 }
 
+// frame_from_camera; where nothing tells it the camera itself, with a warning.
+core::Rigid3 camera_in(const Transforms& transforms, const std::string& frame,
+                       const std::string& camera_frame, const std::string& topic) {
+  if (const auto told = transforms.fixed(frame, camera_frame)) return *told;
+  spdlog::warn(
+      "{}: nothing tells where the frame '{}' is on the body of '{}'; its poses are taken "
+      "for those of the camera",
+      topic, frame, camera_frame);
+  return {};
+}
+
+// Normalizes the rotation; false if the numbers are no pose.
+bool made_rigid(core::Rigid3& pose) {
+  constexpr double kMaxDeviationOfNorm = 0.1;
+  if (!core::is_finite(pose) || std::abs(pose.rotation.norm() - 1.0) > kMaxDeviationOfNorm)
+    return false;
+  pose.rotation.normalize();
+  return true;
+}
+
 }  // namespace
 
 Transforms read_transforms(bags::BagReader& bag, bool with_moving) {
@@ -103,21 +124,11 @@ core::Trajectory read_poses(bags::BagReader& bag, int position, const std::strin
   bag.start({position});
   while (const auto message = bag.next()) {
     FramePose pose = read_pose(topic, message->bytes);
-    if (!frame_from_camera) {
-      frame_from_camera = transforms.fixed(pose.frame, camera_frame);
-      if (!frame_from_camera && pose.frame != camera_frame) {
-        spdlog::warn(
-            "{}: nothing tells where the frame '{}' is on the body of '{}'; its poses are "
-            "taken for those of the camera",
-            topic.name, pose.frame, camera_frame);
-      }
-      if (!frame_from_camera) frame_from_camera = core::Rigid3{};
-    }
+    if (!frame_from_camera)
+      frame_from_camera = camera_in(transforms, pose.frame, camera_frame, topic.name);
     const double stamp_s = messages::seconds(pose.stamp);
-    const double norm = pose.world_from_frame.rotation.norm();
-    const bool is_pose = core::is_finite(pose.world_from_frame) && norm > 0.9 && norm < 1.1;
-    if (!is_pose || (!trajectory.empty() && stamp_s <= trajectory.back().stamp_s)) continue;
-    pose.world_from_frame.rotation.normalize();
+    const bool is_later = trajectory.empty() || stamp_s > trajectory.back().stamp_s;
+    if (!is_later || !made_rigid(pose.world_from_frame)) continue;
     trajectory.push_back({stamp_s, pose.world_from_frame * *frame_from_camera});
   }
   return trajectory;

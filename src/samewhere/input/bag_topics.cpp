@@ -95,24 +95,28 @@ std::string listed(const std::vector<Topic>& topics, const std::vector<int>& pos
   return text;
 }
 
+std::string topics_with(const std::vector<Topic>& topics,
+                        const std::vector<std::string_view>& types) {
+  std::string fitting;
+  for (const Topic& topic : topics) {
+    if (has_type(topic, types)) fitting.append(fitting.empty() ? "" : ", ").append(topic.name);
+  }
+  return fitting.empty() ? fmt::format("a topic of the type {}", types.front())
+                         : "one of " + fitting;
+}
+
 // Of topics with one name but several types the one with a type of the role.
 int find_named(const std::filesystem::path& path, const std::vector<Topic>& topics,
                const Role& role, const std::string& name) {
-  std::string other_type;
+  std::string found = "there is no such topic";
   for (std::size_t i = 0; i < topics.size(); ++i) {
     if (topics[i].name != name) continue;
     if (has_type(topics[i], role.types) && is_read(topics[i])) return static_cast<int>(i);
-    other_type = topics[i].type.empty() ? "no schema" : topics[i].type + ", " + topics[i].encoding;
+    found = "that topic has " +
+            (topics[i].type.empty() ? "no schema" : topics[i].type + ", " + topics[i].encoding);
   }
-  std::string fitting;
-  for (const Topic& topic : topics) {
-    if (has_type(topic, role.types)) fitting.append(fitting.empty() ? "" : ", ").append(topic.name);
-  }
-  throw InputError(fmt::format(
-      "{}: --topics {}={}: {}, expected {}", path.string(), role.name, name,
-      other_type.empty() ? "there is no such topic" : fmt::format("that topic has {}", other_type),
-      fitting.empty() ? fmt::format("a topic of the type {}", role.types.front())
-                      : "one of " + fitting));
+  throw InputError(fmt::format("{}: --topics {}={}: {}, expected {}", path.string(), role.name,
+                               name, found, topics_with(topics, role.types)));
 }
 
 // Topics of pictures, parted by what they show.

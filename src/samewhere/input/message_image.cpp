@@ -71,7 +71,7 @@ const Encoding& encoding_of(const messages::Image& message, const std::string& n
 // The pixels as they are stored, in this computer's byte order, as a picture of its own.
 cv::Mat pixels_of(const messages::Image& message, int type, const std::string& name) {
   require_reasonable_size(name, message.width, message.height);
-  const std::size_t row = message.width * CV_ELEM_SIZE(type);
+  const std::size_t row = std::size_t{message.width} * static_cast<std::size_t>(CV_ELEM_SIZE(type));
   if (message.step < row || message.data.size() < std::size_t{message.step} * message.height) {
     throw InputError(fmt::format(
         "{}: has {} bytes in rows of {}, expected {} rows of at least {} for {} x {} pixels of {}",

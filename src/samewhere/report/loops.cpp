@@ -70,7 +70,7 @@ void add_geometry(Json& scores, const core::GeometryEvidence& geometry) {
     add_score(scores, "pose_difference_rad", *geometry.pose_difference_rad);
 }
 
-Json scores_of(const core::Verdict& verdict) {
+Json scores_json(const core::Verdict& verdict) {
   const core::Evidence& evidence = core::evidence_of(verdict);
   Json scores = Json::object();
   add_score(scores, "similarity", evidence.similarity);
@@ -111,7 +111,7 @@ void add_sessions(Json& entry, const core::Candidate& candidate) {
 Json entry_of(const core::LedgerRow& row) {
   Json entry = {{"query", row.candidate.query.index()},    {"match", row.candidate.match.index()},
                 {"verdict", core::name_of(row.verdict)},   {"stage", core::stage_of(row.verdict)},
-                {"reason", core::reason_of(row.verdict)},  {"scores", scores_of(row.verdict)},
+                {"reason", core::reason_of(row.verdict)},  {"scores", scores_json(row.verdict)},
                 {"match_from_query", pose_of(row.verdict)}};
   const core::Candidate& candidate = row.candidate;
   if (candidate.query.session() != candidate.match.session()) add_sessions(entry, candidate);
