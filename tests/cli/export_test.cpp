@@ -79,13 +79,20 @@ void Export::expect_files() const {
   EXPECT_EQ(core::read_file(path("as.ply")), core::read_file(path("run/map.ply")));
   EXPECT_THAT(core::read_file(path("as.g2o")), HasSubstr("EDGE_SE3:QUAT 0 1 "));
   EXPECT_THAT(core::read_file(path("as.las")), testing::StartsWith("LASF"));
+  const Outcome messages = exported("mcap");
+  ASSERT_EQ(messages.exit_code, 0) << messages.err;
+  const Outcome info = run_program("info " + quoted(path("run/export.mcap")), folder_.root());
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  for (const char* topic : {"/tf_static", "/pose", "/path", "/map_points", "/diagnostics",
+                            "/camera/image/compressed", "/camera/camera_info"})
+    EXPECT_THAT(info.out, HasSubstr(topic));
   ASSERT_EQ(exported("las").exit_code, 0);
   EXPECT_EQ(core::read_file(path("run/export.las")), core::read_file(path("as.las")));
   expect_refused("las", "export.las: is there already");
 }
 
 void Export::expect_refusals() const {
-  expect_refused("obj", "--to = obj: expected one of colmap, nerfstudio, tum");
+  expect_refused("obj", "--to = obj: expected one of colmap, nerfstudio, mcap, tum");
   expect_refused("tum --binary", "--binary: has no meaning for --to tum");
   expect_refused("las --undistort", "--undistort: has no meaning for --to las");
   expect_refused("tum --session 1", "expected one of 0 to 0");
