@@ -150,9 +150,10 @@ class BagSource : public core::Source {
  public:
   BagSource(path file, const Config& config)
       : file_(std::move(file)), config_(config), bag_(bags::open_bag(file_)) {
-    if (!bag_->info().is_closed)
-      spdlog::warn("{}: was not closed by its recorder; it was read once to find what is in it",
-                   file_.string());
+    if (const bags::BagInfo& told = bag_->info(); !told.is_closed) {
+      spdlog::warn("{}: was not closed by its recorder{}; it was read once to find what is in it",
+                   file_.string(), told.damage.empty() ? "" : " and " + told.damage);
+    }
     Opening opening = read_opening(file_, *bag_);
     topics_ = choose_topics(file_, bag_->topics(), opening.first, config_.topics);
     if (!config_.depth) topics_.depth = -1;
