@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <samewhere/core/nanoseconds.hpp>
 #include <samewhere/input/test_recording.hpp>
 
 namespace samewhere::input {
@@ -64,7 +65,8 @@ TEST_F(HoloLens, ABrokenPoseIsLeftOutAndNamedWithItsLine) {
   EXPECT_THAT(said_on_opening(), AllOf(HasSubstr("poses.txt, line 1"), HasSubstr("'inf'")));
   const core::Trajectory truth = open()->truth().trajectory;
   ASSERT_EQ(truth.size(), 2U);
-  EXPECT_DOUBLE_EQ(truth[0].stamp_s, 4 / 12.0) << "the second line is that of the second frame";
+  EXPECT_EQ(truth[0].stamp_s, core::in_whole_nanoseconds(4 / 12.0))
+      << "the second line is that of the second frame";
   folder_.write("poses.txt", poses(2) + "1 0 0\n");
   EXPECT_THAT(said_on_opening(), HasSubstr("found 3 values, expected 16"));
 }
