@@ -107,7 +107,11 @@ TEST(Bag, ACutFileGivesItsBeginningAndSaysSo) {
       const auto bag = open_bag(folder.at("cut"));
       EXPECT_FALSE(bag->info().is_closed);
       const auto found = all_messages(*bag);
-      EXPECT_LT(found.size(), written.size() + 1);
+      // behind the messages stands the index, of packed ones most of the file
+      if (kind.compression == Compression::kNone && part == 10) {
+        EXPECT_GT(found.size(), written.size() / 4);
+        EXPECT_LT(found.size(), written.size() * 3 / 4);
+      }
       for (const ReadMessage& message : found)
         EXPECT_NE(std::find(written.begin(), written.end(), message), written.end());
     }

@@ -63,6 +63,12 @@ bool has_any(const std::string& name, std::initializer_list<std::string_view> pa
   });
 }
 
+// Ground truth is never taken for odometry unless it is named.
+bool is_truth_name(const std::string& name) {
+  return has_any(name, {"ground_truth", "groundtruth", "ground-truth", "/gt", "vicon", "mocap",
+                        "optitrack", "vrpn", "leica"});
+}
+
 // Roles with the topics that the user named for them; "none" for those to leave out.
 std::map<std::string, std::string> read_wanted(const std::filesystem::path& path,
                                                const std::string& wanted) {
@@ -311,11 +317,6 @@ class Choice {
     return found;
   }
 
-  static bool is_truth_name(const std::string& name) {
-    return has_any(name, {"ground_truth", "groundtruth", "ground-truth", "/gt", "vicon", "mocap",
-                          "optitrack", "vrpn", "leica"});
-  }
-
   int named_truth() const {
     int found = -1;
     for (std::size_t i = 0; i < topics_.size(); ++i) {
@@ -359,7 +360,8 @@ int choose_odometry(const std::filesystem::path& path, const std::vector<Topic>&
     return find_named(path, topics, role, name->second);
   std::vector<int> found;
   for (std::size_t i = 0; i < topics.size(); ++i) {
-    if (has_type(topics[i], role.types) && is_read(topics[i]) && topics[i].num_messages > 0)
+    if (has_type(topics[i], role.types) && is_read(topics[i]) && topics[i].num_messages > 0 &&
+        !is_truth_name(topics[i].name))
       found.push_back(static_cast<int>(i));
   }
   if (found.size() == 1) return found.front();

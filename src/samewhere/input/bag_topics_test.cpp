@@ -126,6 +126,15 @@ TEST(BagTopics, NamesThatCannotBeAreRefused) {
               HasSubstr("has no pictures"));
 }
 
+TEST(BagTopics, GroundTruthIsNoOdometryUnlessItIsNamed) {
+  ListedTopics bag;
+  bag.other("/ground_truth/odometry", "nav_msgs/Odometry");
+  EXPECT_THROW(choose_odometry("a.mcap", bag.topics, ""), core::InputError);
+  EXPECT_EQ(choose_odometry("a.mcap", bag.topics, "odometry=/ground_truth/odometry"), 0);
+  bag.other("/wheels", "nav_msgs/Odometry");
+  EXPECT_EQ(choose_odometry("a.mcap", bag.topics, ""), 1);
+}
+
 TEST(BagTopics, OdometryIsTheOnlyOneOrTheNamedOne) {
   ListedTopics bag;
   bag.other("/wheels", "nav_msgs/Odometry").other("/visual", "nav_msgs/Odometry");

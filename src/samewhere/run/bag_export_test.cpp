@@ -148,7 +148,7 @@ TEST(BagExport, CalibrationsAreReadBackToTheBit) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(BagExport, JpegIsNearThePicture) {
+TEST(BagExport, JpegHasTheSizeOfThePicture) {
   const std::filesystem::path folder = empty_bag_folder();
   NoiseSource source(false);
   write_bag(source, folder / "a.mcap", {.compression = bags::Compression::kZstd, .is_jpeg = true},
