@@ -107,10 +107,10 @@ TEST(Bag, ACutFileGivesItsBeginningAndSaysSo) {
       const auto bag = open_bag(folder.at("cut"));
       EXPECT_FALSE(bag->info().is_closed);
       const auto found = all_messages(*bag);
-      // behind the messages stands the index, of packed ones most of the file
-      if (kind.compression == Compression::kNone && part == 10) {
+      // whole chunks are read: of MCAP, 4 MB each, one of two
+      if (kind.compression == Compression::kNone && part == 15) {
         EXPECT_GT(found.size(), written.size() / 4);
-        EXPECT_LT(found.size(), written.size() * 3 / 4);
+        EXPECT_LT(found.size(), written.size());
       }
       for (const ReadMessage& message : found)
         EXPECT_NE(std::find(written.begin(), written.end(), message), written.end());
