@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/input/bag_picture.hpp>
 #include <samewhere/input/bag_poses.hpp>
 #include <samewhere/input/bag_topics.hpp>
 
@@ -52,7 +53,7 @@ FramePose read_pose(const Topic& topic, std::string_view bytes) {
 }
 
 // The frame of the only topic of pictures, or of the first that is no depth; empty: there is none.
-std::string frame_of_pictures(bags::BagReader& bag) {
+std::string frame_of_pictures(const std::filesystem::path& path, bags::BagReader& bag) {
   std::vector<int> pictures;
   for (std::size_t i = 0; i < bag.topics().size(); ++i) {
     const Topic& topic = bag.topics()[i];
@@ -64,11 +65,7 @@ std::string frame_of_pictures(bags::BagReader& bag) {
   const auto message = bag.next();
   if (!message) return {};
   const Topic& topic = bag.topics()[static_cast<std::size_t>(message->topic)];
-  const messages::Layout layout = *bags::layout_of(topic);
-  if (is_compressed_topic(topic))
-    return messages::read_message<messages::CompressedImage>(message->bytes, layout)
-        .header.frame_id;
-  return messages::read_message<messages::Image>(message->bytes, layout).header.frame_id;
+  return read_picture(path, topic, *message).frame_id;
 }
 
 // frame_from_camera; where nothing tells it the camera itself, with a warning.
@@ -138,7 +135,7 @@ OdometryRows read_bag_odometry(const std::filesystem::path& path, const std::str
   const auto bag = bags::open_bag(path);
   const int topic = choose_odometry(path, bag->topics(), wanted);
   try {
-    const std::string camera_frame = frame_of_pictures(*bag);
+    const std::string camera_frame = frame_of_pictures(path, *bag);
     OdometryRows rows;
     for (const core::StampedPose& pose : read_poses(*bag, topic, camera_frame))
       rows.push_back({pose.stamp_s, pose.world_from_camera, std::nullopt});
