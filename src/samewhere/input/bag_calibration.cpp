@@ -10,29 +10,13 @@
 #include <samewhere/input/bag_message.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/input/message_image.hpp>
+#include <samewhere/input/stereo_pair.hpp>
 
 namespace samewhere::input {
 namespace {
 
 using core::InputError;
 using std::filesystem::path;
-
-core::Rigid3 rotation_of(const std::array<double, 9>& r) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = r[static_cast<std::size_t>(i)];
-  const bool is_set = matrix.topLeftCorner<3, 3>().norm() > 0.0;
-  return is_set ? core::Rigid3::from_matrix(matrix) : core::Rigid3{};
-}
-
-// As a pair was calibrated: R turns each camera to the axes of the rectified pair, P of the right
-// one has its place along them. Nothing if P tells of no place.
-std::optional<core::Rigid3> left_from_right(const messages::CameraInfo& left,
-                                            const messages::CameraInfo& right, bool is_rectified) {
-  if (right.p[0] == 0.0 || right.p[3] == 0.0) return std::nullopt;
-  const core::Rigid3 rectified_left_from_right{.translation = {-right.p[3] / right.p[0], 0.0, 0.0}};
-  if (is_rectified) return rectified_left_from_right;
-  return core::inverse(rotation_of(left.r)) * rectified_left_from_right * rotation_of(right.r);
-}
 
 class BagRig {
  public:
@@ -84,26 +68,31 @@ class BagRig {
 
   void add_right_camera() {
     const auto camera = camera_from(topics_.right, topics_.right_camera_info);
-    const auto left_from_right = place_of_right_camera();
-    if (!camera || !left_from_right) {
-      spdlog::warn(
-          "{}: {} is not used: the recording does not tell its calibration, or where it is",
-          file_.string(), name_of(topics_.right));
+    const auto first_from_right = place_of_right_camera();
+    if (!camera || !first_from_right) {
+      spdlog::warn("{}: {} is not used: {}", file_.string(), name_of(topics_.right),
+                   camera ? first_from_right.error() : "the recording has no calibration of it");
       return;
     }
     rig_.cameras.push_back(*camera);
-    rig_.body_from_camera.push_back(*left_from_right);
+    rig_.body_from_camera.push_back(*first_from_right);
   }
 
-  std::optional<core::Rigid3> place_of_right_camera() const {
+  Result<core::Rigid3, std::string> place_of_right_camera() const {
     const messages::CameraInfo* left = info_of(topics_.camera_info);
     const messages::CameraInfo* right = info_of(topics_.right_camera_info);
+    std::string reason = "there is no camera_info of both cameras";
     if (left != nullptr && right != nullptr) {
       const auto told = left_from_right(*left, *right, is_rectified_name(name_of(topics_.right)));
       if (told) return told;
+      reason = told.error();
     }
-    return opening_.transforms.fixed(opening_.first_image(topics_.color).frame_id,
-                                     opening_.first_image(topics_.right).frame_id);
+    const std::string left_frame = frame_name(opening_.first_image(topics_.color).frame_id);
+    const std::string right_frame = frame_name(opening_.first_image(topics_.right).frame_id);
+    const auto fixed = opening_.transforms.fixed(left_frame, right_frame);
+    if (fixed && left_frame != right_frame) return *fixed;
+    return refuse(fmt::format("{}; /tf_static does not tell where '{}' is on '{}'", reason,
+                              right_frame, left_frame));
   }
 
   void add_imu() {

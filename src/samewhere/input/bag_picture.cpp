@@ -16,10 +16,10 @@ BagPicture picture_from(Payload payload, const bags::Topic& topic, std::int64_t 
   const messages::Time stamp = payload.header.stamp == zero
                                    ? messages::time_of_nanoseconds(log_time_ns)
                                    : payload.header.stamp;
-  return {.stamp_s = messages::seconds(stamp),
-          .frame_id = payload.header.frame_id,
-          .name = fmt::format("{} {}.{:09}", topic.name, stamp.sec, stamp.nanosec),
-          .content = std::move(payload)};
+  BagPicture picture{.stamp_s = messages::seconds(stamp), .frame_id = payload.header.frame_id};
+  picture.name = fmt::format("{} {}.{:09}", topic.name, stamp.sec, stamp.nanosec);
+  picture.content = std::move(payload);
+  return picture;
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,21 +23,26 @@ bool is_transform_topic(const Topic& topic) {
 // A pose of a message, and of which frame.
 struct FramePose {
   messages::Time stamp;
-  std::string frame;  // empty: the message does not say
-  core::Rigid3 world_from_frame;
+  std::string frame;                             // empty: the message does not say
+  std::optional<core::Rigid3> world_from_frame;  // nothing: the numbers are no pose
 };
 
-template <class Payload>
-FramePose pose_of(const Payload& message) {
-  if constexpr (std::is_same_v<Payload, messages::TransformStamped>) {
-    return {message.header.stamp, message.child_frame_id, rigid_of(message.transform)};
-  } else if constexpr (std::is_same_v<Payload, messages::Odometry>) {
-    return {message.header.stamp, message.child_frame_id, rigid_of(message.pose.pose)};
-  } else if constexpr (std::is_same_v<Payload, messages::PoseWithCovarianceStamped>) {
-    return {message.header.stamp, "", rigid_of(message.pose.pose)};
-  } else {
-    return {message.header.stamp, "", rigid_of(message.pose)};
-  }
+std::optional<core::Rigid3> rigid_pose(const messages::Pose& pose) {
+  return rigid_from(pose.position, pose.orientation);
+}
+
+FramePose pose_of(const messages::TransformStamped& message) {
+  return {message.header.stamp, message.child_frame_id,
+          rigid_from(message.transform.translation, message.transform.rotation)};
+}
+FramePose pose_of(const messages::Odometry& message) {
+  return {message.header.stamp, message.child_frame_id, rigid_pose(message.pose.pose)};
+}
+FramePose pose_of(const messages::PoseWithCovarianceStamped& message) {
+  return {message.header.stamp, "", rigid_pose(message.pose.pose)};
+}
+FramePose pose_of(const messages::PoseStamped& message) {
+  return {message.header.stamp, "", rigid_pose(message.pose)};
 }
 
 FramePose read_pose(const Topic& topic, std::string_view bytes) {
@@ -79,15 +83,6 @@ core::Rigid3 camera_in(const Transforms& transforms, const std::string& frame,
   return {};
 }
 
-// Normalizes the rotation; false if the numbers are no pose.
-bool made_rigid(core::Rigid3& pose) {
-  constexpr double kMaxDeviationOfNorm = 0.1;
-  if (!core::is_finite(pose) || std::abs(pose.rotation.norm() - 1.0) > kMaxDeviationOfNorm)
-    return false;
-  pose.rotation.normalize();
-  return true;
-}
-
 }  // namespace
 
 Transforms read_transforms(bags::BagReader& bag, bool with_moving) {
@@ -120,13 +115,13 @@ core::Trajectory read_poses(bags::BagReader& bag, int position, const std::strin
   core::Trajectory trajectory;
   bag.start({position});
   while (const auto message = bag.next()) {
-    FramePose pose = read_pose(topic, message->bytes);
+    const FramePose pose = read_pose(topic, message->bytes);
     if (!frame_from_camera)
       frame_from_camera = camera_in(transforms, pose.frame, camera_frame, topic.name);
     const double stamp_s = messages::seconds(pose.stamp);
     const bool is_later = trajectory.empty() || stamp_s > trajectory.back().stamp_s;
-    if (!is_later || !made_rigid(pose.world_from_frame)) continue;
-    trajectory.push_back({stamp_s, pose.world_from_frame * *frame_from_camera});
+    if (!is_later || !pose.world_from_frame) continue;
+    trajectory.push_back({stamp_s, *pose.world_from_frame * *frame_from_camera});
   }
   return trajectory;
 }

@@ -1,40 +1,24 @@
-#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <samewhere/input/transforms.hpp>
 
 namespace samewhere::input {
-namespace {
 
-// Two frames that hang on each other would be followed for ever.
-constexpr std::size_t kMaxDepth = 64;
-
-std::string without_slash(const std::string& name) {
+std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
-core::Rigid3 rigid_of(const messages::Vector3& translation, const messages::Quaternion& rotation) {
-  return {.rotation = Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z),
-          .translation = {translation.x, translation.y, translation.z}};
-}
-
-// Of quaternions that are none a message is not worth the end of a run.
-bool is_pose(core::Rigid3& pose) {
-  constexpr double kMaxDeviation = 0.1;
-  if (!core::is_finite(pose) || std::abs(pose.rotation.norm() - 1.0) > kMaxDeviation) return false;
+std::optional<core::Rigid3> rigid_from(const messages::Vector3& translation,
+                                       const messages::Quaternion& rotation) {
+  constexpr double kMaxDeviationOfLength = 0.1;
+  core::Rigid3 pose{.rotation = {rotation.w, rotation.x, rotation.y, rotation.z},
+                    .translation = {translation.x, translation.y, translation.z}};
+  if (!core::is_finite(pose) || std::abs(pose.rotation.norm() - 1.0) > kMaxDeviationOfLength)
+    return std::nullopt;
   pose.rotation.normalize();
-  return true;
-}
-
-}  // namespace
-
-core::Rigid3 rigid_of(const messages::Transform& transform) {
-  return rigid_of(transform.translation, transform.rotation);
-}
-
-core::Rigid3 rigid_of(const messages::Pose& pose) {
-  return rigid_of(pose.position, pose.orientation);
+  return pose;
 }
 
 messages::Transform transform_of(const core::Rigid3& pose) {
@@ -43,50 +27,58 @@ messages::Transform transform_of(const core::Rigid3& pose) {
           .rotation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
 }
 
-void Transforms::add(const messages::TransformStamped& transform, bool is_static) {
-  core::Rigid3 parent_from_child = rigid_of(transform.transform);
-  if (!is_pose(parent_from_child)) return;
-  const std::string parent = without_slash(transform.header.frame_id);
-  const std::string child = without_slash(transform.child_frame_id);
-  const auto [link, is_new] = links_.try_emplace(child, Link{parent, is_static, {}});
-  if (!is_new && link->second.parent != parent) return;
-  const std::int64_t stamp_ns = is_static ? 0 : messages::nanoseconds(transform.header.stamp);
-  link->second.is_static = link->second.is_static && is_static;
-  link->second.poses[stamp_ns] = parent_from_child;
+bool Transforms::add(const messages::TransformStamped& transform, bool is_static) {
+  const std::string parent = frame_name(transform.header.frame_id);
+  const std::string child = frame_name(transform.child_frame_id);
+  const auto pose = rigid_from(transform.transform.translation, transform.transform.rotation);
+  if (!pose || parent.empty() || child.empty() || is_at_or_above(child, parent)) return false;
+  const auto [known, is_new] = links_.try_emplace(child, Link{parent, is_static, {}});
+  Link& link = known->second;
+  if (is_static && !link.is_static) return false;
+  if (is_static) {
+    link = {parent, true, {{0, *pose}}};
+    return true;
+  }
+  if (link.parent != parent) return false;
+  if (link.is_static) link = {parent, false, {}};
+  link.poses[messages::nanoseconds(transform.header.stamp)] = *pose;
+  return true;
+}
+
+bool Transforms::is_at_or_above(const std::string& frame, std::string below) const {
+  while (below != frame) {
+    const auto link = links_.find(below);
+    if (link == links_.end()) return false;
+    below = link->second.parent;
+  }
+  return true;
 }
 
 std::vector<const Transforms::Link*> Transforms::way_up(const std::string& frame) const {
   std::vector<const Link*> way;
-  auto link = links_.find(without_slash(frame));
-  while (link != links_.end() && way.size() < kMaxDepth) {
+  for (auto link = links_.find(frame_name(frame)); link != links_.end();
+       link = links_.find(link->second.parent))
     way.push_back(&link->second);
-    link = links_.find(link->second.parent);
-  }
   return way;
+}
+
+Transforms::Root Transforms::fixed_root_of(const std::string& frame) const {
+  Root root{.name = frame_name(frame), .root_from_frame = {}};
+  for (const Link* link : way_up(frame)) {
+    if (!link->is_static) break;
+    root.name = link->parent;
+    root.root_from_frame = link->poses.begin()->second * root.root_from_frame;
+  }
+  return root;
 }
 
 std::optional<core::Rigid3> Transforms::fixed(const std::string& target,
                                               const std::string& source) const {
-  const std::string to = without_slash(target);
-  const std::string from = without_slash(source);
-  if (to == from) return core::Rigid3{};
-  // poses of both in the frames above them, as far as all is fixed
-  const auto poses_above = [this](const std::string& frame) {
-    std::vector<std::pair<std::string, core::Rigid3>> above = {{frame, core::Rigid3{}}};
-    for (const Link* link : way_up(frame)) {
-      if (!link->is_static) break;
-      above.emplace_back(link->parent, link->poses.begin()->second * above.back().second);
-    }
-    return above;
-  };
-  const auto above_source = poses_above(from);
-  for (const auto& [frame, frame_from_target] : poses_above(to)) {
-    const auto common =
-        std::find_if(above_source.begin(), above_source.end(),
-                     [&frame = frame](const auto& pose) { return pose.first == frame; });
-    if (common != above_source.end()) return core::inverse(frame_from_target) * common->second;
-  }
-  return std::nullopt;
+  if (frame_name(target) == frame_name(source)) return core::Rigid3{};
+  const Root of_target = fixed_root_of(target);
+  const Root of_source = fixed_root_of(source);
+  if (of_target.name != of_source.name) return std::nullopt;
+  return core::inverse(of_target.root_from_frame) * of_source.root_from_frame;
 }
 
 std::optional<core::Rigid3> Transforms::pose_at(const Link& link, std::int64_t stamp_ns) {

@@ -9,6 +9,7 @@
 #include <samewhere/input/message_image.hpp>
 #include <samewhere/node/node.hpp>
 #include <samewhere/node/outputs.hpp>
+#include <samewhere/node/transforms.hpp>
 
 namespace samewhere::node {
 namespace {
@@ -114,8 +115,8 @@ void Node::take_one(const CameraInfoIn& in) {
 
 void Node::take_one(const OdometryIn& in) {
   const messages::Odometry& odometry = in.message;
-  if (frame_name(odometry.header.frame_id) != config_.odom_frame ||
-      frame_name(odometry.child_frame_id) != config_.base_frame) {
+  if (input::frame_name(odometry.header.frame_id) != config_.odom_frame ||
+      input::frame_name(odometry.child_frame_id) != config_.base_frame) {
     throw core::InputError(fmt::format(
         "odometry from '{}' to '{}'; expected '{}' to '{}' (node.odom_frame, node.base_frame)",
         odometry.header.frame_id, odometry.child_frame_id, config_.odom_frame, config_.base_frame));
@@ -126,15 +127,17 @@ void Node::take_one(const OdometryIn& in) {
 
 void Node::take_one(const TransformsIn& in) {
   if (in.is_static) {
-    const int num_unusable = static_transforms_.take(in.message);
+    int num_unusable = 0;
+    for (const messages::TransformStamped& transform : in.message.transforms)
+      if (!static_transforms_.add(transform, true)) ++num_unusable;
     if (num_unusable > 0)
       refused(fmt::format("/tf_static: {} transforms are not rigid or close a ring", num_unusable));
     return;
   }
   if (!config_.odometry_from_tf) return;
   for (const messages::TransformStamped& transform : in.message.transforms) {
-    if (frame_name(transform.header.frame_id) == config_.odom_frame &&
-        frame_name(transform.child_frame_id) == config_.base_frame) {
+    if (input::frame_name(transform.header.frame_id) == config_.odom_frame &&
+        input::frame_name(transform.child_frame_id) == config_.base_frame) {
       take_odometry(messages::seconds(transform.header.stamp), transform.transform.translation,
                     transform.transform.rotation);
     }

@@ -6,13 +6,13 @@
 #include <optional>
 #include <string>
 
+#include <samewhere/input/transforms.hpp>
 #include <samewhere/node/config.hpp>
 #include <samewhere/node/incoming.hpp>
 #include <samewhere/node/live_frames.hpp>
 #include <samewhere/node/pairing.hpp>
 #include <samewhere/node/publisher.hpp>
 #include <samewhere/node/startup.hpp>
-#include <samewhere/node/transforms.hpp>
 #include <samewhere/slam.hpp>
 
 namespace samewhere::node {
@@ -76,7 +76,7 @@ class Node {
   Publisher& publisher_;
   Counts counts_;
   Pairing pairing_;
-  StaticTransforms static_transforms_;
+  input::Transforms static_transforms_;
   OdometryBuffer odometry_;
   LiveFrames frames_;
   std::optional<Startup> startup_;  // until a session has begun

@@ -7,8 +7,10 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/input/message_image.hpp>
+#include <samewhere/input/stereo_pair.hpp>
 #include <samewhere/library/convert.hpp>
 #include <samewhere/node/startup.hpp>
+#include <samewhere/node/transforms.hpp>
 
 namespace samewhere::node {
 namespace {
@@ -19,14 +21,6 @@ constexpr std::size_t kFramesForRate = 8;
 Camera interface_camera(const core::Camera& camera) {
   return std::visit(
       [&](const auto& c) { return library::camera_of(camera, c.width_px, c.height_px); }, camera);
-}
-
-// The rectification matrix; of zeros, as uncalibrated cameras have it, none.
-Pose rectified_from_raw(const messages::CameraInfo& info) {
-  Pose pose = Pose::Identity();
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> r(info.r.data());
-  if (!r.isZero()) pose.linear() = r;
-  return pose;
 }
 
 }  // namespace
@@ -70,35 +64,42 @@ std::optional<double> Startup::frame_rate_hz() const {
   return std::abs(rate_hz - whole_hz) < kRounding * rate_hz ? whole_hz : rate_hz;
 }
 
-Result<Setup, std::string> Startup::place_of_camera(const StaticTransforms& transforms) const {
-  const std::string camera_frame = frame_name(frames_.back().first.frame_id);
-  if (const auto pose = transforms.find(camera_frame, config_.base_frame))
-    return Setup{.calibration = {}, .base_frame = config_.base_frame, .camera_from_base = *pose};
-  if (frames_.back().first.stamp_s - *first_stamp_s_ < config_.tf_wait_s) {
+bool Startup::may_wait() const {
+  return frames_.back().first.stamp_s - *first_stamp_s_ < config_.tf_wait_s;
+}
+
+Result<Setup, std::string> Startup::place_of_camera(const input::Transforms& transforms) const {
+  const std::string camera_frame = input::frame_name(frames_.back().first.frame_id);
+  if (const auto pose = transforms.fixed(camera_frame, config_.base_frame)) {
+    return Setup{.calibration = {},
+                 .base_frame = config_.base_frame,
+                 .camera_from_base = library::pose_of(*pose)};
+  }
+  if (may_wait()) {
     return refuse(
         fmt::format("waiting for /tf_static: {} to {}", config_.base_frame, camera_frame));
   }
-  const StaticTransforms::Root root = transforms.root_of(camera_frame);
+  const input::Transforms::Root root = transforms.fixed_root_of(camera_frame);
   return Setup{.calibration = {},
                .base_frame = root.name.empty() ? "camera" : root.name,
-               .camera_from_base = root.root_from_frame.inverse()};
+               .camera_from_base = library::pose_of(core::inverse(root.root_from_frame))};
 }
 
-Pose Startup::left_from_right() const {
-  const messages::CameraInfo& right = second_->info;
-  const double baseline_m = right.p[0] == 0.0 ? 0.0 : -right.p[3] / right.p[0];
-  if (!std::isfinite(baseline_m) || baseline_m == 0.0) {
-    throw core::InputError(
-        "right/camera_info: P[3] is 0; expected minus the focal length times the baseline, in "
-        "metres");
-  }
-  Pose pose = Pose::Identity();
-  pose.translation().x() = baseline_m;
-  if (config_.is_rectified) return pose;
-  return rectified_from_raw(first_->info).inverse() * pose * rectified_from_raw(right);
+Result<Pose, std::string> Startup::place_of_right_camera(
+    const input::Transforms& transforms) const {
+  const auto told = input::left_from_right(first_->info, second_->info, config_.is_rectified);
+  if (told) return library::pose_of(*told);
+  const std::string left = input::frame_name(frames_.back().first.frame_id);
+  const std::string right = input::frame_name(frames_.back().second->frame_id);
+  const bool are_apart = left != right && !config_.is_rectified;
+  const auto fixed = transforms.fixed(left, right);
+  if (are_apart && fixed) return library::pose_of(*fixed);
+  if (are_apart && may_wait())
+    return refuse(fmt::format("waiting for /tf_static: {} to {}", left, right));
+  throw core::InputError("right/camera_info: " + told.error());
 }
 
-Result<Setup, std::string> Startup::setup(const StaticTransforms& transforms) const {
+Result<Setup, std::string> Startup::setup(const input::Transforms& transforms) const {
   const bool is_stereo = config_.cameras == Cameras::kStereo;
   if (frames_.empty()) return refuse(std::string("waiting for images"));
   if (!first_) return refuse(std::string("waiting for camera_info"));
@@ -109,14 +110,16 @@ Result<Setup, std::string> Startup::setup(const StaticTransforms& transforms) co
   if (!setup) return setup;
   Camera left = first_->camera;
   // where the base is the camera itself, the map has the axes of a robot all the same
-  const bool is_camera = setup->base_frame == frame_name(frames_.back().first.frame_id);
+  const bool is_camera = setup->base_frame == input::frame_name(frames_.back().first.frame_id);
   left.body_from_camera = is_camera ? body_from_optical() : setup->camera_from_base.inverse();
   setup->calibration = {.cameras = {left},
                         .has_depth = config_.cameras == Cameras::kDepth,
                         .frame_rate_hz = *rate_hz};
   if (is_stereo) {
+    const auto left_from_right = place_of_right_camera(transforms);
+    if (!left_from_right) return refuse(left_from_right.error());
     Camera right = second_->camera;
-    right.body_from_camera = left.body_from_camera * left_from_right();
+    right.body_from_camera = left.body_from_camera * *left_from_right;
     setup->calibration.cameras.push_back(right);
   }
   return setup;

@@ -6,11 +6,12 @@
 #include <string>
 
 #include <samewhere/core/result.hpp>
+#include <samewhere/core/rig.hpp>
+#include <samewhere/input/transforms.hpp>
 #include <samewhere/messages/messages.hpp>
 #include <samewhere/node/config.hpp>
 #include <samewhere/node/incoming.hpp>
 #include <samewhere/node/pairing.hpp>
-#include <samewhere/node/transforms.hpp>
 #include <samewhere/types.hpp>
 
 namespace samewhere::node {
@@ -25,8 +26,10 @@ struct Setup {
 // What comes before the first frame is tracked: holds the first frames until calibration, frame
 // rate and the camera's place on the robot are known.
 //
-// If /tf_static connects node.base_frame with the camera, that is the base. If it does not within
-// node.tf_wait_s, the base is the top of the tree that holds the camera, or the camera itself.
+// The place of the right camera is that of the calibrations (R, P) or, if they tell of none, that
+// of /tf_static. If /tf_static connects node.base_frame with the camera, that is the base. If it
+// does not within node.tf_wait_s, the base is the top of the tree that holds the camera, or the
+// camera itself.
 class Startup {
  public:
   explicit Startup(Config config);
@@ -38,7 +41,7 @@ class Startup {
   std::uint64_t add(FrameSet frame);
   // All that is known, or what is waited for. Throws core::InputError if the calibrations do not
   // make a stereo pair.
-  Result<Setup, std::string> setup(const StaticTransforms& transforms) const;
+  Result<Setup, std::string> setup(const input::Transforms& transforms) const;
   std::deque<FrameSet> take_frames();
 
  private:
@@ -48,8 +51,10 @@ class Startup {
   };
 
   std::optional<double> frame_rate_hz() const;
-  Result<Setup, std::string> place_of_camera(const StaticTransforms& transforms) const;
-  Pose left_from_right() const;
+  // For transforms that did not come yet.
+  bool may_wait() const;
+  Result<Setup, std::string> place_of_camera(const input::Transforms& transforms) const;
+  Result<Pose, std::string> place_of_right_camera(const input::Transforms& transforms) const;
 
   Config config_;
   std::optional<CalibratedCamera> first_;

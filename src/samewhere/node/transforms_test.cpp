@@ -1,6 +1,3 @@
-#include <cmath>
-#include <limits>
-
 #include <gtest/gtest.h>
 
 #include <samewhere/node/live_frames.hpp>
@@ -34,45 +31,12 @@ TEST(Transforms, AMessageComesBackAsThePose) {
   }
 }
 
-TEST(Transforms, WhatIsNoRotationIsNoPose) {
-  EXPECT_FALSE(pose_from({}, {0.0, 0.0, 0.0, 0.0}));
-  EXPECT_FALSE(pose_from({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}, {}));
-  EXPECT_TRUE(pose_from({}, {0.0, 0.0, 0.0, 2.0}));
-}
-
 // REP-103: what the camera sees ahead is ahead of the robot, what is right in the image has y < 0.
 TEST(Transforms, OpticalAxesAreThoseOfTheRobotTurned) {
   const Pose pose = body_from_optical();
   EXPECT_EQ(pose * Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(pose * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, -1, 0));
   EXPECT_EQ(pose * Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, -1));
-}
-
-TEST(StaticTransforms, ChainsFramesOfOneTree) {
-  StaticTransforms transforms;
-  transforms.take(transform_of("/base_link", "mast", some_pose(1)));
-  transforms.take(transform_of("mast", "/camera", some_pose(2)));
-  transforms.take(transform_of("base_link", "laser", some_pose(3)));
-  expect_same(*transforms.find("base_link", "camera"), some_pose(1) * some_pose(2));
-  expect_same(*transforms.find("camera", "base_link"), (some_pose(1) * some_pose(2)).inverse());
-  expect_same(*transforms.find("laser", "camera"),
-              some_pose(3).inverse() * some_pose(1) * some_pose(2));
-  EXPECT_FALSE(transforms.find("base_link", "gripper"));
-  EXPECT_EQ(transforms.root_of("camera").name, "base_link");
-  EXPECT_EQ(transforms.root_of("gripper").name, "gripper");
-}
-
-TEST(StaticTransforms, RefusesRingsAndWhatIsNotRigid) {
-  StaticTransforms transforms;
-  EXPECT_EQ(transforms.take(transform_of("a", "a", some_pose(1))), 1);
-  EXPECT_EQ(transforms.take(transform_of("a", "b", some_pose(1))), 0);
-  EXPECT_EQ(transforms.take(transform_of("b", "c", some_pose(2))), 0);
-  EXPECT_EQ(transforms.take(transform_of("c", "b", some_pose(3))), 1);
-  EXPECT_EQ(transforms.take(transform_of("c", "a", some_pose(3))), 1);
-  messages::TFMessage broken = transform_of("a", "d", some_pose(1));
-  broken.transforms[0].transform.rotation = {0.0, 0.0, 0.0, 0.0};
-  EXPECT_EQ(transforms.take(broken), 1);
-  EXPECT_EQ(transforms.root_of("c").name, "a");
 }
 
 Tracked tracked_at(int seed, const Pose& map_from_odom) {
