@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -5,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/geometry/camera.hpp>
@@ -117,6 +119,137 @@ TEST(MessageDepth, IsInMetres) {
   EXPECT_EQ(metres.at<float>(0, 0), 2.5F);
   EXPECT_EQ(metres.at<float>(0, 1), 0.0F);
   EXPECT_THROW(depth_of(message_of("bgr8", 1, 1, {1, 2, 3}), "a", 1000.0), InputError);
+}
+
+messages::CompressedImage compressed(const std::string& format, const cv::Mat& image,
+                                     const std::string& ending = ".png") {
+  messages::CompressedImage message;
+  message.format = format;
+  EXPECT_TRUE(cv::imencode(ending, image, message.data));
+  return message;
+}
+
+TEST(CompressedImage, OfPngHasThePixelsThatWereSent) {
+  const cv::Mat colour = picture(6, 4);
+  EXPECT_EQ(cv::norm(image_of(compressed("bgr8; png compressed bgr8", colour), "a"), colour,
+                     cv::NORM_INF),
+            0.0);
+  const cv::Mat grey = (cv::Mat_<std::uint8_t>(1, 3) << 0, 7, 255);
+  const cv::Mat back = image_of(compressed("mono8; png compressed ", grey), "a");
+  ASSERT_EQ(back.type(), CV_8UC1);
+  EXPECT_EQ(cv::norm(back, grey, cv::NORM_INF), 0.0);
+}
+
+TEST(CompressedImage, Of16BitsIsScaledTo8AsAnImageIs) {
+  const cv::Mat grey = (cv::Mat_<std::uint16_t>(1, 3) << 0, 128 * 257, 65535);
+  const cv::Mat back = image_of(compressed("mono16; png compressed ", grey), "a");
+  ASSERT_EQ(back.type(), CV_8UC1);
+  EXPECT_EQ(back.at<std::uint8_t>(0, 0), 0);
+  EXPECT_EQ(back.at<std::uint8_t>(0, 1), 128);
+  EXPECT_EQ(back.at<std::uint8_t>(0, 2), 255);
+}
+
+TEST(CompressedImage, OfJpegHasNearlyThosePixels) {
+  const cv::Mat colour = picture(64, 48);
+  const cv::Mat back = image_of(compressed("rgb8; jpeg compressed bgr8", colour, ".jpg"), "a");
+  ASSERT_EQ(back.type(), CV_8UC3);
+  ASSERT_EQ(back.size(), colour.size());
+  EXPECT_LT(cv::norm(back, colour, cv::NORM_L1) / (64.0 * 48.0 * 3.0), 6.0);
+}
+
+TEST(CompressedImage, ThatIsCutIsRefusedByItsName) {
+  messages::CompressedImage cut = compressed("bgr8; png compressed bgr8", picture(64, 48));
+  cut.data.resize(cut.data.size() / 2);
+  EXPECT_THAT(complaint([&] { image_of(cut, "/camera 12.5"); }), HasSubstr("/camera 12.5"));
+  cut.data.clear();
+  EXPECT_THAT(complaint([&] { image_of(cut, "/camera 12.5"); }), HasSubstr("/camera 12.5"));
+}
+
+// What compressed_depth_image_transport writes: an enumerator that is 0, two numbers of the
+// quantization, and a PNG of 16 bits.
+messages::CompressedImage compressed_depth(const std::string& format, float scale, float offset,
+                                           const cv::Mat& stored) {
+  messages::CompressedImage message = compressed(format, stored);
+  const std::int32_t inverse_depth = 0;
+  std::vector<std::uint8_t> header(12);
+  std::memcpy(header.data(), &inverse_depth, 4);
+  std::memcpy(header.data() + 4, &scale, 4);
+  std::memcpy(header.data() + 8, &offset, 4);
+  message.data.insert(message.data.begin(), header.begin(), header.end());
+  return message;
+}
+
+// Its quantization of metres, with its own defaults. Rounded as cv::Mat_<ushort> is by a cast.
+constexpr float kQuantization = 100.0F;
+constexpr float kMaxDepth_m = 10.0F;
+constexpr float kScale = kQuantization * (kQuantization + 1.0F);
+constexpr float kOffset = 1.0F - kScale / kMaxDepth_m;
+
+cv::Mat quantized(const std::vector<float>& depths_m) {
+  cv::Mat stored(1, static_cast<int>(depths_m.size()), CV_16UC1);
+  for (int x = 0; x < stored.cols; ++x) {
+    const float depth_m = depths_m[static_cast<std::size_t>(x)];
+    stored.at<std::uint16_t>(0, x) =
+        depth_m < kMaxDepth_m ? static_cast<std::uint16_t>(kScale / depth_m + kOffset) : 0;
+  }
+  return stored;
+}
+
+TEST(CompressedDepth, Of16BitsIsInUnits) {
+  const cv::Mat stored = (cv::Mat_<std::uint16_t>(1, 3) << 0, 1500, 60000);
+  // the two numbers are not set for these
+  for (const float unset : {0.0F, 1e30F, std::numeric_limits<float>::quiet_NaN()}) {
+    for (const char* format : {"16UC1; compressedDepth", "16UC1; compressedDepth png"}) {
+      const messages::CompressedImage message = compressed_depth(format, unset, unset, stored);
+      EXPECT_TRUE(is_depth_format(message.format));
+      const cv::Mat depth_m = depth_of(message, "a", 1000.0);
+      EXPECT_EQ(depth_m.type(), CV_32FC1);
+      EXPECT_EQ(depth_m.at<float>(0, 0), 0.0F);
+      EXPECT_EQ(depth_m.at<float>(0, 1), 1.5F);
+      EXPECT_EQ(depth_m.at<float>(0, 2), 60.0F);
+      EXPECT_EQ(depth_of(message, "a", 500.0).at<float>(0, 1), 3.0F);
+    }
+  }
+}
+
+TEST(CompressedDepth, OfFloatsComesBackAsFarAsItsQuantizationGoes) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> depths_m = {0.4F, 1.0F, 2.5F, 7.3F, 9.9F, none, 12.0F};
+  const cv::Mat depth_m =
+      depth_of(compressed_depth("32FC1; compressedDepth", kScale, kOffset, quantized(depths_m)),
+               "a", 1000.0);
+  ASSERT_EQ(depth_m.cols, 7);
+  for (int x = 0; x < 5; ++x) {
+    const float sent_m = depths_m[static_cast<std::size_t>(x)];
+    EXPECT_NEAR(depth_m.at<float>(0, x), sent_m, 1.01F * sent_m * sent_m / kScale + 1e-5F);
+  }
+  EXPECT_EQ(depth_m.at<float>(0, 5), 0.0F) << "unknown";
+  EXPECT_EQ(depth_m.at<float>(0, 6), 0.0F) << "beyond what is sent";
+}
+
+TEST(CompressedDepth, OfAPngAloneIsInUnits) {
+  const cv::Mat stored = (cv::Mat_<std::uint16_t>(1, 2) << 0, 1500);
+  EXPECT_EQ(depth_of(compressed("16UC1; png compressed ", stored), "a", 1000.0).at<float>(0, 1),
+            1.5F);
+}
+
+TEST(CompressedDepth, ThatIsNoPngOf16BitsIsRefusedByItsName) {
+  const cv::Mat stored(4, 4, CV_16UC1, cv::Scalar(1000));
+  const auto refusal = [](const messages::CompressedImage& message) {
+    return complaint([&] { depth_of(message, "/depth 12.5", 1000.0); });
+  };
+  messages::CompressedImage message = compressed_depth("16UC1; compressedDepth", 0, 0, stored);
+  message.data.resize(12);
+  EXPECT_THAT(refusal(message), HasSubstr("/depth 12.5"));
+  message.data.clear();
+  EXPECT_THAT(refusal(message), HasSubstr("/depth 12.5"));
+  // run lengths in place of the PNG
+  message = compressed_depth("16UC1; compressedDepth rvl", 0, 0, stored);
+  message.data.resize(40, 1);
+  std::fill(message.data.begin() + 12, message.data.end(), std::uint8_t{1});
+  EXPECT_THAT(refusal(message), HasSubstr("/depth 12.5"));
+  EXPECT_THAT(refusal(compressed("bgr8; png compressed bgr8", picture(4, 4))),
+              HasSubstr("/depth 12.5"));
 }
 
 messages::CameraInfo camera_info(const std::string& model, std::vector<double> d) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/core/file.hpp>
 #include <samewhere/input/test_folder.hpp>
 #include <samewhere/node/node.hpp>
 #include <samewhere/node/node_thread.hpp>
@@ -85,6 +86,155 @@ TEST(Node, TransformsChainToThePoseThatSlamMeasures) {
   EXPECT_THAT(publisher.of_status, Contains("tracking"));
   EXPECT_EQ(node.counts().num_frames, walk.size());
   EXPECT_EQ(node.counts().num_refused, 0U);
+}
+
+// A rendered walk with a stereo pair.
+class StereoWalk {
+ public:
+  StereoWalk() : walk_(library::read_walk(config())) {
+    const core::Rig& rig = *walk_.frames[0].rig;
+    const core::Rigid3 left_from_right =
+        core::inverse(rig.body_from_camera[0]) * rig.body_from_camera[1];
+    baseline_m_ = left_from_right.translation.x();
+    right_ = library::camera_of(rig.cameras[1], walk_.frames[0].images[1].cols,
+                                walk_.frames[0].images[1].rows);
+  }
+
+  CameraInfoIn info() const { return {Stream::kFirst, info_message(left())}; }
+  CameraInfoIn right_info() const {
+    CameraInfoIn in{Stream::kSecond, info_message(right_)};
+    in.message.p[3] = -in.message.p[0] * baseline_m_;
+    return in;
+  }
+  ImageIn image(std::size_t i) const { return image_in(Stream::kFirst, i); }
+  ImageIn right_image(std::size_t i) const { return image_in(Stream::kSecond, i); }
+  std::size_t size() const { return walk_.frames.size(); }
+
+  // What Slam gives for the same frames.
+  std::vector<Tracked> tracked_alone() const {
+    Calibration calibration = walk_.calibration;
+    calibration.has_depth = false;
+    calibration.cameras[0].body_from_camera = body_from_optical();
+    calibration.cameras.push_back(right_);
+    calibration.cameras[1].body_from_camera = body_from_optical();
+    calibration.cameras[1].body_from_camera.translate(Eigen::Vector3d(baseline_m_, 0, 0));
+    Slam slam(calibration, test_node_options());
+    std::vector<Tracked> all;
+    for (std::size_t i = 0; i < walk_.frames.size(); ++i) {
+      Frame frame = walk_.at(i);
+      frame.stamp_s = messages::seconds(messages::time_of(frame.stamp_s));
+      frame.images.push_back(
+          library::TestWalk::view_of(walk_.frames[i].images[1], frame.images[0].format));
+      all.push_back(slam.track(frame));
+    }
+    return all;
+  }
+
+ private:
+  static pipeline::Config config() {
+    constexpr int kNumFrames = 8;
+    pipeline::Config config = library::test_config(kNumFrames);
+    config.source = "twin:office-loop?seed=5&camera=stereo";
+    return config;
+  }
+  const Camera& left() const { return walk_.calibration.cameras[0]; }
+  ImageIn image_in(Stream stream, std::size_t i) const {
+    const core::Frame& frame = walk_.frames[i];
+    return {stream,
+            image_message(frame.images[stream == Stream::kFirst ? 0 : 1], "bgr8", frame.stamp_s)};
+  }
+
+  library::TestWalk walk_;
+  Camera right_;
+  double baseline_m_ = 0.0;
+};
+
+TEST(Node, TracksAStereoPairAsSlamDoes) {
+  const StereoWalk walk;
+  TestPublisher publisher;
+  Config config = test_node_config();
+  config.cameras = Cameras::kStereo;
+  Node node(config, test_node_options(), publisher);
+  node.take(walk.info());
+  node.take(walk.image(0));
+  node.take(walk.right_image(0));
+  EXPECT_EQ(publisher.of_status.back(), "waiting for right/camera_info");
+  node.take(walk.right_info());
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    node.take(walk.right_image(i));  // the other order
+    node.take(walk.image(i));
+  }
+  EXPECT_EQ(node.counts().num_frames, walk.size());
+  EXPECT_EQ(node.counts().num_refused, 0U) << node.counts().last_refusal;
+  EXPECT_EQ(last_state(publisher, "scale"), "metres");
+  const std::vector<Tracked> expected = walk.tracked_alone();
+  ASSERT_EQ(publisher.of_transforms.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_TRUE(expected[i].has_pose()) << i;
+    const auto& transforms = publisher.of_transforms[i].transforms;
+    const Pose map_from_camera =
+        pose_of_transform(transforms[0]) * pose_of_transform(transforms[1]);
+    EXPECT_LT((map_from_camera.matrix() - expected[i].map_from_camera().matrix()).norm(), 1e-6);
+  }
+}
+
+messages::CompressedImage png_message(const input::TestFolder& folder, const ImageIn& in) {
+  const auto& image = std::get<messages::Image>(in.message);
+  const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC3,
+                       const_cast<std::uint8_t*>(image.data.data()), image.step);
+  folder.write_png("a.png", pixels);
+  const std::string bytes = core::read_file(folder.at("a.png"));
+  return {image.header, "bgr8; png compressed bgr8", {bytes.begin(), bytes.end()}};
+}
+
+TEST(Node, TracksCompressedImagesAsItTracksPlainOnes) {
+  constexpr std::size_t kNumFrames = 12;
+  const MessageWalk walk;
+  const input::TestFolder folder;
+  TestPublisher of_plain;
+  TestPublisher of_compressed;
+  Node plain(test_node_config(), test_node_options(), of_plain);
+  Node compressed(test_node_config(), test_node_options(), of_compressed);
+  plain.take(walk.info());
+  compressed.take(walk.info());
+  for (std::size_t i = 0; i < kNumFrames; ++i) {
+    plain.take(walk.image(i));
+    plain.take(walk.depth(i));
+    compressed.take(ImageIn{Stream::kFirst, png_message(folder, walk.image(i))});
+    compressed.take(walk.depth(i));
+  }
+  EXPECT_EQ(compressed.counts().num_frames, kNumFrames);
+  EXPECT_EQ(of_compressed.of_status.back(), "tracking");
+  ASSERT_EQ(of_plain.of_transforms.size(), kNumFrames);
+  ASSERT_EQ(of_compressed.of_transforms.size(), kNumFrames);
+  for (std::size_t i = 0; i < kNumFrames; ++i)
+    EXPECT_EQ(messages::write_message(of_compressed.of_transforms[i], messages::Layout::kCdr),
+              messages::write_message(of_plain.of_transforms[i], messages::Layout::kCdr));
+}
+
+TEST(Node, LateImagesAreDroppedAndAnEarlierClockNeedsAReset) {
+  const MessageWalk walk;
+  TestPublisher publisher;
+  Node node(test_node_config(), test_node_options(), publisher);
+  node.take(walk.info());
+  const auto play_frame = [&](std::size_t i) {
+    node.take(walk.image(i));
+    node.take(walk.depth(i));
+  };
+  for (const std::size_t i : {0, 1, 2, 3}) play_frame(i);
+  play_frame(2);
+  EXPECT_EQ(node.counts().num_frames, 4U);
+  EXPECT_EQ(node.counts().num_dropped, 2U);
+  EXPECT_EQ(node.counts().num_refused, 0U);
+  play_frame(walk.size() - 1);
+  ASSERT_GT(walk.stamp_s(walk.size() - 1), walk.stamp_s(1) + 1.0);
+  play_frame(0);
+  EXPECT_EQ(node.counts().num_frames, 5U);
+  EXPECT_EQ(node.counts().num_refused, 1U);
+  EXPECT_THAT(node.counts().last_refusal, HasSubstr("expected a later one"));
+  node.take(CommandIn{{CommandKind::kReset, {}}, nullptr});
+  play_frame(1);
+  EXPECT_EQ(node.counts().num_frames, 6U);
 }
 
 TEST(Node, WithoutStaticTransformsTheMapHasTheAxesOfARobot) {
