@@ -169,18 +169,32 @@ Result<FloorPlane, std::string> find_floor(const std::vector<CloudPoint>& cloud,
   return FloorPlane{plane.normal, plane.offset_m, area_m2};
 }
 
+namespace {
+
+// With its origin below a place.
+core::Rigid3 map_below(const FloorPlane& floor, const Eigen::Vector3d& forward_in_world,
+                       const Eigen::Vector3d& place_in_world) {
+  const Eigen::Vector3d& up = floor.up_in_world;
+  const Eigen::Vector3d forward = (forward_in_world - forward_in_world.dot(up) * up).normalized();
+  Eigen::Matrix3d world_from_map;
+  world_from_map << forward, up.cross(forward), up;
+  return inverse(core::Rigid3{Eigen::Quaterniond(world_from_map),
+                              place_in_world - (up.dot(place_in_world) - floor.offset_m) * up});
+}
+
+}  // namespace
+
+core::Rigid3 map_on_floor(const FloorPlane& floor, const Eigen::Vector3d& forward_in_world) {
+  return map_below(floor, forward_in_world, Eigen::Vector3d::Zero());
+}
+
 core::Rigid3 map_from_world(const FloorPlane& floor, const core::Rigid3& world_from_first_camera) {
   const Eigen::Vector3d& up = floor.up_in_world;
   const Eigen::Matrix3d axes = world_from_first_camera.rotation.toRotationMatrix();
   // a camera that looks straight down has its picture's top in front
   const Eigen::Vector3d looks =
       std::abs(axes.col(2).dot(up)) < 0.99 ? Eigen::Vector3d(axes.col(2)) : -axes.col(1);
-  const Eigen::Vector3d forward = (looks - looks.dot(up) * up).normalized();
-  const Eigen::Vector3d& camera = world_from_first_camera.translation;
-  Eigen::Matrix3d world_from_map;
-  world_from_map << forward, up.cross(forward), up;
-  return inverse(core::Rigid3{Eigen::Quaterniond(world_from_map),
-                              camera - (up.dot(camera) - floor.offset_m) * up});
+  return map_below(floor, looks, world_from_first_camera.translation);
 }
 
 }  // namespace samewhere::dense

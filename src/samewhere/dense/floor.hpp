@@ -34,4 +34,8 @@ Result<FloorPlane, std::string> find_floor(const std::vector<CloudPoint>& cloud,
 // camera looked.
 core::Rigid3 map_from_world(const FloorPlane& floor, const core::Rigid3& world_from_first_camera);
 
+// The same with x along `forward_in_world`, which is not upright, and the origin below that of the
+// world.
+core::Rigid3 map_on_floor(const FloorPlane& floor, const Eigen::Vector3d& forward_in_world);
+
 }  // namespace samewhere::dense

@@ -175,6 +175,23 @@ OccupancyGrid cast_grid(const std::vector<Scan>& scans, const FloorPlane& floor,
   return grid;
 }
 
+Result<OccupancyGrid, std::string> find_grid(const std::vector<Scan>& scans,
+                                             const core::Trajectory& cameras,
+                                             const Eigen::Vector3d& forward_in_world,
+                                             const Config& config, std::uint64_t seed) {
+  constexpr std::size_t kMaxScansForFloor = 100;
+  const std::size_t step = scans.size() / kMaxScansForFloor + 1;
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < scans.size(); i += step)
+    points.insert(points.end(), scans[i].points_in_world.begin(), scans[i].points_in_world.end());
+  std::vector<CloudPoint> cloud;
+  for (const Eigen::Vector3f& point : thinned(points, config.grid_cell_m))
+    cloud.push_back({point, {}});
+  const auto floor = find_floor(cloud, config.grid_cell_m, cameras, config, seed);
+  if (!floor) return refuse(floor.error());
+  return cast_grid(scans, *floor, map_on_floor(*floor, forward_in_world), config);
+}
+
 std::string pgm_bytes(const OccupancyGrid& grid) {
   std::string bytes = fmt::format("P5\n{} {}\n255\n", grid.log_odds.cols, grid.log_odds.rows);
   for (int row = grid.log_odds.rows - 1; row >= 0; --row) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
+#include <samewhere/core/result.hpp>
 #include <samewhere/core/rigid3.hpp>
 #include <samewhere/dense/config.hpp>
 #include <samewhere/dense/floor.hpp>
@@ -36,6 +37,14 @@ struct OccupancyGrid {
 // a cell occupied. Cells are of config.grid_cell_m, doubled until at most 2^26 make the plan.
 OccupancyGrid cast_grid(const std::vector<Scan>& scans, const FloorPlane& floor,
                         const core::Rigid3& map_from_world, const Config& config);
+
+// The same for scans alone, in a map whose x axis points along `forward_in_world` and whose origin
+// is below that of the world. The floor is looked for among the points of at most a hundred scans;
+// `cameras`: where each was taken from. Without a floor: why.
+Result<OccupancyGrid, std::string> find_grid(const std::vector<Scan>& scans,
+                                             const core::Trajectory& cameras,
+                                             const Eigen::Vector3d& forward_in_world,
+                                             const Config& config, std::uint64_t seed);
 
 // The two files of a map server's map. The picture, PGM: first row = largest y; 0 occupied, 254
 // free, 205 unknown.

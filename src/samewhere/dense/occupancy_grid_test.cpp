@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <samewhere/dense/grid_message.hpp>
 #include <samewhere/dense/occupancy_grid.hpp>
 #include <samewhere/dense/test_room.hpp>
 
@@ -199,6 +200,45 @@ TEST(OccupancyGrid, FewerScansInLessMemoryStillMakeThePlan) {
   const PlanCheck check = check_plan(walked.grid());
   EXPECT_GT(check.num_free, check.num_open / 2);
   EXPECT_EQ(check.num_free_in_box, 0);
+}
+
+// A robot that takes the message at its word finds walls and free floor where they are.
+TEST(OccupancyGrid, TheMessageLiesWhereTheRoomIs) {
+  const Walked walked(kConfig);
+  const core::Rigid3 world_from_room = TestRoom::world_from_room();
+  const Eigen::Vector3d forward = world_from_room.rotation * Eigen::Vector3d::UnitX();
+  const auto grid = find_grid(walked.scans.all(), walked.cameras, forward, walked.config, 0);
+  ASSERT_TRUE(grid) << grid.error();
+  const core::Rigid3 frame_from_world{
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ())), {3.0, 2.0, 1.0}};
+  const messages::OccupancyGrid message = grid_message(*grid, frame_from_world);
+  const messages::Pose& pose = message.info.origin;
+  const core::Rigid3 frame_from_grid{Eigen::Quaterniond(pose.orientation.w, pose.orientation.x,
+                                                        pose.orientation.y, pose.orientation.z),
+                                     {pose.position.x, pose.position.y, pose.position.z}};
+  const core::Rigid3 grid_from_room =
+      core::inverse(frame_from_grid) * frame_from_world * world_from_room;
+  const auto value_at = [&](double x_m, double y_m) {
+    const Eigen::Vector3d in_grid = grid_from_room * Eigen::Vector3d(x_m, y_m, 0.0);
+    EXPECT_NEAR(in_grid.z(), 0.0, 0.02) << "the grid lies on the floor";
+    const auto column = static_cast<std::size_t>(in_grid.x() / message.info.resolution);
+    const auto row = static_cast<std::size_t>(in_grid.y() / message.info.resolution);
+    return static_cast<int>(message.data.at(row * message.info.width + column));
+  };
+  EXPECT_EQ(value_at(1.5, 1.5), 0);
+  EXPECT_EQ(value_at(2.61, 1.3), 100) << "side of the box";
+  EXPECT_EQ(value_at(2.9, 1.3), 100) << "its top";
+  EXPECT_EQ(value_at(1.5, -0.15), -1) << "behind the wall";
+  EXPECT_EQ(message.data.size(), std::size_t{message.info.width} * message.info.height);
+  EXPECT_LT((grid_from_room.rotation * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitX()).norm(),
+            0.01)
+      << "its x axis is the one that was asked for";
+}
+
+TEST(OccupancyGrid, ThereIsNoneWithoutAFloor) {
+  const auto grid = find_grid({{{}, {{1.0F, 0.0F, 0.0F}}}}, {{}}, Eigen::Vector3d::UnitX(), {}, 0);
+  ASSERT_FALSE(grid);
+  EXPECT_NE(grid.error().find("below the cameras"), std::string::npos) << grid.error();
 }
 
 TEST(OccupancyGrid, FilesSayWhatTheGridSays) {

@@ -16,6 +16,9 @@ struct Scan {
   std::vector<Eigen::Vector3f> points_in_world;
 };
 
+// The first point of each voxel, ordered by voxel.
+std::vector<Eigen::Vector3f> thinned(const std::vector<Eigen::Vector3f>& points, double voxel_m);
+
 // The scans of a walk, kept until it is known where the floor is. Holds at most
 // config.max_scan_points points: when there are more, every other scan goes and only every other
 // view is kept from then on.

@@ -69,4 +69,10 @@ cv::Mat stereo_depth_m(const core::Rig& rig, const cv::Mat& left, const cv::Mat&
   return depth_m;
 }
 
+std::optional<cv::Mat> depth_of(const core::Frame& frame, const Config& config) {
+  if (frame.depth_m) return frame.depth_m;
+  if (frame.images.size() < 2 || frame.rig->cameras.size() < 2) return std::nullopt;
+  return stereo_depth_m(*frame.rig, frame.images[0], frame.images[1], config);
+}
+
 }  // namespace samewhere::dense

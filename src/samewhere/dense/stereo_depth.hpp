@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include <opencv2/core/mat.hpp>
 
+#include <samewhere/core/frame.hpp>
 #include <samewhere/core/rig.hpp>
 #include <samewhere/dense/config.hpp>
 
@@ -12,5 +15,9 @@ namespace samewhere::dense {
 // Throws InputError if the pair is not rectified (core/rectified_pair.hpp).
 cv::Mat stereo_depth_m(const core::Rig& rig, const cv::Mat& left, const cv::Mat& right,
                        const Config& config);
+
+// The depth of a frame: its own, or that of its pair; nothing if it has neither. Throws as
+// stereo_depth_m does.
+std::optional<cv::Mat> depth_of(const core::Frame& frame, const Config& config);
 
 }  // namespace samewhere::dense

@@ -56,26 +56,41 @@ bool PointReader::is_on_edge(const cv::Mat& depth_m, int row, int column) const 
   return false;
 }
 
-std::vector<SeenPoint> PointReader::points(const View& view) {
-  remember_rays(view.camera);
+template <class Use>
+void PointReader::visit(const core::Camera& camera, const cv::Mat& depth_m, const Use& use) {
+  remember_rays(camera);
   const cv::Size size(camera_.width_px, camera_.height_px);
-  core::require(view.depth_m.size() == size && view.depth_m.type() == CV_32FC1,
+  core::require(depth_m.size() == size && depth_m.type() == CV_32FC1,
                 "depth is 32-bit float and as large as the camera's picture");
-  core::require(view.image.size() == size && view.image.depth() == CV_8U,
+  auto ray = rays_.begin();
+  for (int row = 0; row < size.height; row += config_.step_px) {
+    for (int column = 0; column < size.width; column += config_.step_px, ++ray) {
+      const float here_m = depth_m.at<float>(row, column);
+      if (!is_usable(here_m) || is_on_edge(depth_m, row, column)) continue;
+      use(Eigen::Vector3f(here_m * *ray), row, column);
+    }
+  }
+}
+
+std::vector<SeenPoint> PointReader::points(const View& view) {
+  core::require(view.image.size() == view.depth_m.size() && view.image.depth() == CV_8U,
                 "the image has 8 bits and the size of the camera's picture");
   const Eigen::Matrix3f rotation = view.world_from_camera.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = view.world_from_camera.translation.cast<float>();
   std::vector<SeenPoint> points;
-  auto ray = rays_.begin();
-  for (int row = 0; row < size.height; row += config_.step_px) {
-    for (int column = 0; column < size.width; column += config_.step_px, ++ray) {
-      const float depth_m = view.depth_m.at<float>(row, column);
-      if (!is_usable(depth_m) || is_on_edge(view.depth_m, row, column)) continue;
-      const Eigen::Vector3f in_camera = depth_m * *ray;
-      points.push_back(
-          {in_camera, rotation * in_camera + translation, colour_at(view.image, row, column)});
-    }
-  }
+  visit(view.camera, view.depth_m, [&](const Eigen::Vector3f& in_camera, int row, int column) {
+    points.push_back(
+        {in_camera, rotation * in_camera + translation, colour_at(view.image, row, column)});
+  });
+  return points;
+}
+
+std::vector<Eigen::Vector3f> PointReader::points_in_camera(const core::Camera& camera,
+                                                           const cv::Mat& depth_m) {
+  std::vector<Eigen::Vector3f> points;
+  visit(camera, depth_m, [&](const Eigen::Vector3f& in_camera, int /*row*/, int /*column*/) {
+    points.push_back(in_camera);
+  });
   return points;
 }
 

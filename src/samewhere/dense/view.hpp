@@ -38,8 +38,13 @@ class PointReader {
   // report depths between the two surfaces where nothing is. In the order of rows. Image and depth
   // must have the camera's size.
   std::vector<SeenPoint> points(const View& view);
+  // The same points in the axes of the camera, without an image. `depth_m` as in a View.
+  std::vector<Eigen::Vector3f> points_in_camera(const core::Camera& camera, const cv::Mat& depth_m);
 
  private:
+  // Calls use(in_camera, row, column) for each point.
+  template <class Use>
+  void visit(const core::Camera& camera, const cv::Mat& depth_m, const Use& use);
   void remember_rays(const core::Camera& camera);
   bool is_usable(float depth_m) const;
   bool is_on_edge(const cv::Mat& depth_m, int row, int column) const;

@@ -113,13 +113,13 @@ class ViewReader {
 
  private:
   std::optional<cv::Mat> depth_of(const core::Frame& frame) const {
-    if (frames_.info().has_depth) return frame.depth_m;
-    if (frame.images.size() < 2 || frame.rig->cameras.size() < 2) {
+    auto depth_m = dense::depth_of(frame, config_.dense);
+    if (!depth_m && !frames_.info().has_depth) {
       throw core::InputError(config_.source +
                              ": found neither depth images nor a second camera, expected one of "
                              "them for dense maps");
     }
-    return dense::stereo_depth_m(*frame.rig, frame.images[0], frame.images[1], config_.dense);
+    return depth_m;
   }
 
   const pipeline::Config& config_;

@@ -63,6 +63,7 @@ ExportFigures write_mcap(const ExportJob& job) {
   figures.push_back(report::figure("points", "{}", counts.num_points));
   figures.push_back(report::figure("pictures", "{}", counts.num_pictures));
   figures.push_back(report::figure("verdicts", "{}", counts.num_verdicts));
+  figures.push_back({"grid", counts.grid});
   return figures;
 }
 
@@ -153,8 +154,8 @@ constexpr std::array kFormats = {
     ExportFormat{"nerfstudio", "nerfstudio", "transforms.json, pictures and depth of the keyframes",
                  true, false, &write_nerfstudio},
     ExportFormat{"mcap", "export.mcap",
-                 "ROS 2 messages: TF, path, points, pictures of the keyframes, verdicts", false,
-                 false, &write_mcap},
+                 "ROS 2 messages: TF, path, points, grid, pictures of the keyframes, verdicts",
+                 false, false, &write_mcap},
     ExportFormat{"tum", "export.tum", "measured frames: stamp tx ty tz qx qy qz qw", false, false,
                  &write_tum},
     ExportFormat{"kitti", "export-kitti.txt", "the same frames without stamps: 3 x 4 matrices",

@@ -5,13 +5,19 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <samewhere/bags/bag.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/nanoseconds.hpp>
+#include <samewhere/dense/grid_message.hpp>
+#include <samewhere/dense/scans.hpp>
+#include <samewhere/dense/stereo_depth.hpp>
+#include <samewhere/dense/view.hpp>
 #include <samewhere/input/message_image.hpp>
 #include <samewhere/input/transforms.hpp>
 #include <samewhere/pipeline/slam.hpp>
@@ -84,6 +90,39 @@ messages::DiagnosticStatus status_of(const nlohmann::json& row) {
   }
   return status;
 }
+
+// What the keyframes saw in depth.
+class KeyframeScans {
+ public:
+  explicit KeyframeScans(const dense::Config& config)
+      : config_(config), reader_(config), scans_(config) {}
+
+  void add(const core::Frame& frame, const core::Rigid3& world_from_camera) {
+    if (!frame.rig->is_calibrated() ||
+        !std::holds_alternative<core::PinholeRadtan>(frame.rig->cameras[0]))
+      return;
+    const auto depth_m = dense::depth_of(frame, config_);
+    if (!depth_m) return;
+    scans_.add(
+        reader_.points({frame.rig->cameras[0], world_from_camera, frame.images[0], *depth_m}),
+        world_from_camera.translation);
+    cameras_.push_back({0.0, world_from_camera});
+  }
+
+  // In a map whose x axis is that of the first keyframe's body.
+  Result<dense::OccupancyGrid, std::string> grid(std::uint64_t seed) const {
+    if (cameras_.empty()) return refuse(std::string("the recording has no depth"));
+    return dense::find_grid(scans_.all(), cameras_,
+                            core::inverse(base_from_optical()).rotation * Eigen::Vector3d::UnitX(),
+                            config_, seed);
+  }
+
+ private:
+  dense::Config config_;
+  dense::PointReader reader_;
+  dense::Scans scans_;
+  core::Trajectory cameras_;
+};
 
 class McapOfRun {
  public:
@@ -180,7 +219,27 @@ class McapOfRun {
       positions.insert(keyframe->view.frame.index());
     }
     SourceFrames frames(config, positions);
-    while (const auto frame = frames.next()) add_picture(*frame, *keyframes.at(frame->id.index()));
+    KeyframeScans scans(config.dense);
+    while (const auto frame = frames.next()) {
+      const scene::Keyframe& keyframe = *keyframes.at(frame->id.index());
+      add_picture(*frame, keyframe);
+      scans.add(*frame, keyframe.world_from_body * keyframe.view.rig->body_from_camera[0]);
+    }
+    add_grid(scans.grid(static_cast<std::uint64_t>(config.seed)));
+  }
+
+  void add_grid(const Result<dense::OccupancyGrid, std::string>& grid) {
+    if (!grid) {
+      counts_.grid = "none: " + grid.error();
+      return;
+    }
+    messages::OccupancyGrid message = dense::grid_message(*grid, base_from_optical());
+    message.header = stamped_header(first_ns(), kMapFrame);
+    message.info.map_load_time = message.header.stamp;
+    counts_.grid =
+        fmt::format("{} x {} cells of {} m", message.info.width, message.info.height, grid->cell_m);
+    wait_for_turn(bag_->add_topic<messages::OccupancyGrid>("/map", true), first_ns(),
+                  write_message(message, bag_->layout()));
   }
 
   void add_picture(const core::Frame& frame, const scene::Keyframe& keyframe) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/scene/map_file.hpp>
@@ -14,12 +15,15 @@ struct McapCounts {
   std::size_t num_points = 0;
   std::size_t num_verdicts = 0;
   std::size_t num_pictures = 0;
+  std::string grid;  // its size, or why there is none
 };
 
 // A finished run as an MCAP file of ROS 2 messages, in the order of the frames' stamps:
 //   /tf, /tf_static     map -> base_link of each measured frame; base_link -> camera_optical_frame
 //   /pose, /path        the same poses; the path once, at the first stamp
 //   /map_points         PointCloud2 of the landmarks, x y z rgb, once, at the first stamp
+//   /map                OccupancyGrid of the keyframes' depth (dense.*), once, at the first stamp;
+//                       none without depth or floor
 //   /camera/image/compressed, /camera/camera_info   keyframes, read again from the source
 //   /diagnostics        the last verdict on each loop candidate, at its query: OK accepted, WARN
 //                       ambiguous or withdrawn, ERROR rejected, with reason and every score
