@@ -28,6 +28,7 @@ struct Config {
   double map_to_odom_postdate_s = 0.1;
   double map_period_s = 1.0;
   int max_landmarks = 200000;
+  double grid_period_s = 5.0;
 };
 
 inline void visit_images(Config& config, core::FieldVisitor& visit) {
@@ -81,6 +82,10 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .max = 1000.0});
   visit("max_landmarks", config.max_landmarks,
         {.help = "most landmarks in a cloud; above, every n-th", .min = 1, .max = 1e8});
+  visit("grid_period_s", config.grid_period_s,
+        {.help = "least time between two occupancy grids, seconds; 0: none (needs depth images)",
+         .min = 0.0,
+         .max = 1e6});
 }
 
 // `node.key=value` of the assignments goes into the first, the others are settings of SLAM. Throws

@@ -7,6 +7,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/printable.hpp>
 #include <samewhere/input/message_image.hpp>
+#include <samewhere/library/convert.hpp>
 #include <samewhere/node/node.hpp>
 #include <samewhere/node/outputs.hpp>
 #include <samewhere/node/transforms.hpp>
@@ -184,6 +185,7 @@ void Node::try_to_start() {
     if (!setup) return set_status(setup.error());
     slam_ = std::make_unique<Slam>(setup->calibration, options_);
     setup_ = *setup;
+    prepare_grids();
   } catch (const std::exception& error) {
     why_not_started_ = core::printable_line(error.what(), core::kMaxMessage);
     refused(why_not_started_);
@@ -194,6 +196,14 @@ void Node::try_to_start() {
   std::deque<FrameSet> frames = startup_->take_frames();
   startup_.reset();
   for (const FrameSet& waiting : frames) track(waiting);
+}
+
+void Node::prepare_grids() {
+  if (config_.cameras != Cameras::kDepth || config_.grid_period_s == 0.0) return;
+  const dense::Config config =
+      library::config_of(options_.profile, options_.settings, options_.prior).dense;
+  depths_.emplace(config, setup_->first_camera);
+  grids_ = std::make_unique<GridThread>(config, options_.threads, publisher_);
 }
 
 void Node::track(const FrameSet& frame) {
@@ -207,6 +217,7 @@ void Node::track(const FrameSet& frame) {
     given.depth = view_of(images[1]);
   }
   newest_ = slam_->track(given);
+  if (depths_) depths_->take_frame(given.stamp_s, images[1]);
   ++counts_.num_frames;
   frames_.update(*newest_, setup_->camera_from_base);
   publish_frames(*newest_);
@@ -255,18 +266,34 @@ void Node::publish_map_if_due(const Tracked& tracked) {
   map_told_s_ = tracked.stamp_s;
   publish_state();
   const std::shared_ptr<const Map> map = slam_->map();
+  const messages::Header header = header_of(config_.map_frame, tracked.stamp_s);
+  publish_grid_if_due(header, map);
   if (map->version() == map_version_told_) return;
   map_version_told_ = map->version();
-  const messages::Header header = header_of(config_.map_frame, tracked.stamp_s);
   publisher_.path(path_message(header, *map, setup_->camera_from_base));
   publisher_.landmarks(
       landmarks_message(header, *map, static_cast<std::size_t>(config_.max_landmarks)));
 }
 
+void Node::publish_grid_if_due(const messages::Header& header,
+                               const std::shared_ptr<const Map>& map) {
+  if (!depths_ || depths_->all().empty() || map->version() == grid_version_told_) return;
+  const double stamp_s = messages::seconds(header.stamp);
+  const double since_s = stamp_s - grid_told_s_.value_or(-INFINITY);
+  if (since_s >= 0.0 && since_s < config_.grid_period_s) return;
+  grid_told_s_ = stamp_s;
+  grid_version_told_ = map->version();
+  grids_->make({header, map, depths_->all()});
+}
+
 void Node::publish_events() {
   messages::DiagnosticArray array{.header = header_of("", newest_ ? newest_->stamp_s : 0.0)};
-  for (const Event& event : slam_->take_events())
+  for (const Event& event : slam_->take_events()) {
+    if (const auto* inserted = std::get_if<KeyframeInserted>(&event.what); inserted && depths_)
+      depths_->take_keyframe(*inserted);
+    if (std::holds_alternative<MapDiscarded>(event.what) && depths_) depths_->clear();
     if (auto status = event_message(event)) array.status.push_back(std::move(*status));
+  }
   if (!array.status.empty()) publisher_.diagnostics(array);
 }
 
@@ -286,6 +313,7 @@ void Node::publish_state() {
     state.values.push_back({"keyframes", fmt::format("{}", map->num_keyframes())});
     state.values.push_back({"scale", map->is_metric() ? "metres" : "unknown"});
     state.values.push_back({"base_frame", setup_->base_frame});
+    if (grids_) state.values.push_back({"no_grid", grids_->why_none()});
   }
   if (newest_) state.values.push_back({"inliers", fmt::format("{}", newest_->num_inliers)});
   publisher_.diagnostics(
@@ -345,6 +373,9 @@ std::string Node::begin_in(const std::filesystem::path& map, MapUse use) {
   waiting_for_odometry_.reset();
   map_told_s_.reset();
   map_version_told_ = 0;
+  if (depths_) depths_->clear();
+  grid_told_s_.reset();
+  grid_version_told_ = 0;
   return map.empty() ? "a new session with an empty map"
                      : "a new session in " + map.string() +
                            (use == MapUse::kLocalize ? ", which stays as it is" : "");
@@ -358,7 +389,9 @@ std::vector<StampedPose> Node::finish() {
     publish_events();
     trajectory = slam_->trajectory();
     map_told_s_.reset();
+    grid_told_s_.reset();
     if (newest_) publish_map_if_due(*newest_);
+    grids_.reset();  // the last grid is made
   } catch (const std::exception& error) {
     refused(error.what());
   }

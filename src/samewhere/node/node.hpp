@@ -8,7 +8,9 @@
 
 #include <samewhere/input/transforms.hpp>
 #include <samewhere/node/config.hpp>
+#include <samewhere/node/grid_thread.hpp>
 #include <samewhere/node/incoming.hpp>
+#include <samewhere/node/keyframe_depths.hpp>
 #include <samewhere/node/live_frames.hpp>
 #include <samewhere/node/pairing.hpp>
 #include <samewhere/node/publisher.hpp>
@@ -55,6 +57,7 @@ class Node {
 
   void use(FrameSet frame);
   void try_to_start();
+  void prepare_grids();
   void track(const FrameSet& frame);
   Answer execute(const Command& command);
   std::string carry_out(const Command& command);
@@ -67,6 +70,7 @@ class Node {
   void publish_frames(const Tracked& tracked);
   void publish_corrected_odometry();
   void publish_map_if_due(const Tracked& tracked);
+  void publish_grid_if_due(const messages::Header& header, const std::shared_ptr<const Map>& map);
   void publish_events();
   void publish_state();
   void set_status(const std::string& status);
@@ -90,6 +94,10 @@ class Node {
   bool is_paused_ = false;
   std::optional<double> map_told_s_;
   std::uint64_t map_version_told_ = 0;
+  std::optional<KeyframeDepths> depths_;  // where a grid is made
+  std::unique_ptr<GridThread> grids_;
+  std::optional<double> grid_told_s_;
+  std::uint64_t grid_version_told_ = 0;
 };
 
 }  // namespace samewhere::node

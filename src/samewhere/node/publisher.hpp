@@ -4,7 +4,8 @@
 
 namespace samewhere::node {
 
-// Where a node's messages go: a transport, a test. Called in the node's thread.
+// Where a node's messages go: a transport, a test. Called in the node's thread but
+// where it says otherwise.
 class Publisher {
  public:
   Publisher() = default;
@@ -20,6 +21,9 @@ class Publisher {
   virtual void path(const messages::Path& message) = 0;
   // When the map has changed.
   virtual void landmarks(const messages::PointCloud2& message) = 0;
+  // The occupancy grid of the depth of the keyframes, when the map has changed. Called in another
+  // thread.
+  virtual void grid(const messages::OccupancyGrid& message) = 0;
   // Loop verdicts with their reasons and other events when they happen; the node's state in
   // between.
   virtual void diagnostics(const messages::DiagnosticArray& message) = 0;

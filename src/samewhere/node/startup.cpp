@@ -33,7 +33,7 @@ void Startup::take_info(Stream stream, const messages::CameraInfo& info) {
   const std::string name = stream == Stream::kFirst ? "camera_info" : "right/camera_info";
   const auto camera = input::camera_of(info, config_.is_rectified, name);
   if (!camera) throw core::InputError(name + ": focal length 0; expected a calibrated camera");
-  known = CalibratedCamera{interface_camera(*camera), info};
+  known = CalibratedCamera{interface_camera(*camera), info, *camera};
 }
 
 std::uint64_t Startup::add(FrameSet frame) {
@@ -112,6 +112,7 @@ Result<Setup, std::string> Startup::setup(const input::Transforms& transforms) c
   // where the base is the camera itself, the map has the axes of a robot all the same
   const bool is_camera = setup->base_frame == input::frame_name(frames_.back().first.frame_id);
   left.body_from_camera = is_camera ? body_from_optical() : setup->camera_from_base.inverse();
+  setup->first_camera = first_->model;
   setup->calibration = {.cameras = {left},
                         .has_depth = config_.cameras == Cameras::kDepth,
                         .frame_rate_hz = *rate_hz};

@@ -21,6 +21,7 @@ struct Setup {
   Calibration calibration;
   std::string base_frame;
   Pose camera_from_base = Pose::Identity();
+  core::Camera first_camera;  // as its camera_info describes it
 };
 
 // What comes before the first frame is tracked: holds the first frames until calibration, frame
@@ -48,6 +49,7 @@ class Startup {
   struct CalibratedCamera {
     Camera camera;
     messages::CameraInfo info;
+    core::Camera model;
   };
 
   std::optional<double> frame_rate_hz() const;

@@ -20,6 +20,7 @@ class TestPublisher : public Publisher {
   }
   void path(const messages::Path& message) override { of_paths.push_back(message); }
   void landmarks(const messages::PointCloud2& message) override { of_landmarks.push_back(message); }
+  void grid(const messages::OccupancyGrid& message) override { of_grids.push_back(message); }
   void diagnostics(const messages::DiagnosticArray& message) override {
     for (const auto& status : message.status) of_diagnostics.push_back(status);
   }
@@ -29,6 +30,7 @@ class TestPublisher : public Publisher {
   std::vector<messages::PoseWithCovarianceStamped> of_poses;
   std::vector<messages::Path> of_paths;
   std::vector<messages::PointCloud2> of_landmarks;
+  std::vector<messages::OccupancyGrid> of_grids;
   std::vector<messages::DiagnosticStatus> of_diagnostics;
   std::vector<std::string> of_status;
 };

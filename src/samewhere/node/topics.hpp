@@ -37,6 +37,7 @@ inline constexpr NodeTopic kCommandTopic{"samewhere/command", {.depth = 10}};
 inline constexpr NodeTopic kPoseTopic{"samewhere/pose", {.depth = 10}};
 inline constexpr NodeTopic kPathTopic{"samewhere/path", {.is_kept = true, .depth = 1}};
 inline constexpr NodeTopic kLandmarksTopic{"samewhere/landmarks", {.is_kept = true, .depth = 1}};
+inline constexpr NodeTopic kGridTopic{"map", {.is_kept = true, .depth = 1}};
 inline constexpr NodeTopic kStatusTopic{"samewhere/status", {.is_kept = true, .depth = 1}};
 inline constexpr NodeTopic kDiagnosticsTopic{"/diagnostics", {.depth = 100}};
 
