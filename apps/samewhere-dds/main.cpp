@@ -12,14 +12,14 @@
 
 #include "graph.hpp"
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/terminal.hpp>
-#include <samewhere/core/tum_file.hpp>
-#include <samewhere/library/convert.hpp>
+#include <samewhere/messages/idl.hpp>
+#include <samewhere/node/inputs.hpp>
 #include <samewhere/node/node_thread.hpp>
 #include <samewhere/node/topics.hpp>
+#include <samewhere/node/trajectory_file.hpp>
 
 namespace samewhere::dds_node {
 namespace {
@@ -43,6 +43,7 @@ struct Job {
   Options options;
   bool is_localizing = false;
   bool lists_settings = false;
+  bool prints_idl = false;
 };
 
 class GraphPublisher final : public node::Publisher {
@@ -53,6 +54,7 @@ class GraphPublisher final : public node::Publisher {
         pose_(advertise<messages::PoseWithCovarianceStamped>(names, node::kPoseTopic)),
         path_(advertise<messages::Path>(names, node::kPathTopic)),
         landmarks_(advertise<messages::PointCloud2>(names, node::kLandmarksTopic)),
+        grid_(advertise<messages::OccupancyGrid>(names, node::kGridTopic)),
         diagnostics_(advertise<messages::DiagnosticArray>(names, node::kDiagnosticsTopic)),
         status_(advertise<messages::String>(names, node::kStatusTopic)) {}
 
@@ -62,6 +64,7 @@ class GraphPublisher final : public node::Publisher {
   }
   void path(const messages::Path& message) override { publish(path_, message); }
   void landmarks(const messages::PointCloud2& message) override { publish(landmarks_, message); }
+  void grid(const messages::OccupancyGrid& message) override { publish(grid_, message); }
   void diagnostics(const messages::DiagnosticArray& message) override {
     publish(diagnostics_, message);
   }
@@ -85,81 +88,22 @@ class GraphPublisher final : public node::Publisher {
   int pose_;
   int path_;
   int landmarks_;
+  int grid_;
   int diagnostics_;
   int status_;
 };
 
-// The subscriptions of a node.
-class Inputs {
- public:
-  Inputs(Graph& graph, const node::TopicNames& names, node::NodeThread& node)
-      : graph_(graph), names_(names), node_(node) {}
-
-  void subscribe(const node::Config& config) {
-    is_reliable_ = config.is_reliable;
-    images(node::kImageTopic, node::Stream::kFirst, config.is_compressed);
-    infos(node::kCameraInfoTopic, node::Stream::kFirst);
-    if (config.cameras == node::Cameras::kDepth)
-      images(node::kDepthTopic, node::Stream::kSecond, false);
-    if (config.cameras == node::Cameras::kStereo) {
-      images(node::kRightImageTopic, node::Stream::kSecond, config.is_compressed);
-      infos(node::kRightCameraInfoTopic, node::Stream::kSecond);
-    }
-    take<messages::Odometry>(
-        names_.name_of(node::kOdometryTopic.name), node::kOdometryTopic.quality,
-        [](messages::Odometry message) { return node::OdometryIn{std::move(message)}; });
-    transforms(node::kStaticTransformsTopic, true);
-    if (config.odometry_from_tf) transforms(node::kTransformsTopic, false);
-    take<messages::String>(names_.name_of(node::kCommandTopic.name), node::kCommandTopic.quality,
-                           [](const messages::String& message) {
-                             return node::CommandIn{node::command_from(message.data), nullptr};
-                           });
-  }
-
- private:
-  template <class Message, class Convert>
-  void take(const std::string& name, const node::Quality& quality, const Convert& convert) {
-    graph_.subscribe(
-        name, messages::type_of<Message>(), quality, [this, convert](std::string_view cdr) {
-          node_.post(convert(messages::read_message<Message>(cdr, messages::Layout::kCdr)));
-        });
-  }
-
-  template <class Message>
-  void image(const std::string& name, node::Quality quality, node::Stream stream) {
-    quality.is_reliable = is_reliable_;
-    take<Message>(name, quality, [stream](Message message) {
-      return node::ImageIn{stream, std::move(message)};
-    });
-  }
-
-  void images(const node::NodeTopic& topic, node::Stream stream, bool is_compressed) {
-    if (is_compressed) {
-      const std::string name = names_.name_of(std::string(topic.name) + "/compressed");
-      return image<messages::CompressedImage>(name, topic.quality, stream);
-    }
-    image<messages::Image>(names_.name_of(topic.name), topic.quality, stream);
-  }
-
-  void infos(const node::NodeTopic& topic, node::Stream stream) {
-    take<messages::CameraInfo>(names_.name_of(topic.name), topic.quality,
-                               [stream](messages::CameraInfo message) {
-                                 return node::CameraInfoIn{stream, std::move(message)};
-                               });
-  }
-
-  void transforms(const node::NodeTopic& topic, bool is_static) {
-    take<messages::TFMessage>(names_.name_of(topic.name), topic.quality,
-                              [is_static](messages::TFMessage message) {
-                                return node::TransformsIn{std::move(message), is_static};
-                              });
-  }
-
-  Graph& graph_;
-  const node::TopicNames& names_;
-  node::NodeThread& node_;
-  bool is_reliable_ = false;
-};
+void subscribe(Graph& graph, const node::TopicNames& names, const node::Config& config,
+               node::NodeThread& node) {
+  node::subscribe_to_inputs(config, [&]<class Message>(const node::Input<Message>& input) {
+    const auto receive = [&node, incoming_from = input.incoming_from](std::string_view cdr) {
+      node.post(incoming_from(messages::read_message<Message>(cdr, messages::Layout::kCdr)));
+    };
+    const std::string name = std::string(input.topic.name).append(input.subtopic);
+    graph.subscribe(names.name_of(name), messages::type_of<Message>(), input.topic.quality,
+                    receive);
+  });
+}
 
 int work(const Job& job) {
   const auto [config, settings] = node::config_from(job.assignments);
@@ -171,19 +115,14 @@ int work(const Job& job) {
   Graph graph(job.domain);
   GraphPublisher publisher(graph, names);
   node::NodeThread node(config, options, publisher);
-  Inputs inputs(graph, names, node);
-  inputs.subscribe(config);
+  subscribe(graph, names, config, node);
   constexpr double kTick_s = 0.5;
   while (!core::is_interrupted()) {
     graph.spin(kTick_s);
     node.post(node::Tick{});
   }
   const std::vector<StampedPose> poses = node.finish();
-  if (job.trajectory.empty()) return core::kDone;
-  core::Trajectory trajectory;
-  for (const StampedPose& pose : poses)
-    trajectory.push_back({pose.stamp_s, library::rigid_of(pose.map_from_camera)});
-  core::write_file(job.trajectory, core::tum_text(trajectory));
+  if (!job.trajectory.empty()) node::write_trajectory(job.trajectory, poses);
   return core::kDone;
 }
 
@@ -205,6 +144,7 @@ int run(int argc, char** argv) {
   app.add_flag("--localize", job.is_localizing, "the map of --map stays as it is");
   app.add_option("--trajectory", job.trajectory, "TUM file written at the end");
   app.add_flag("--settings", job.lists_settings, "print the settings of the node and end");
+  app.add_flag("--idl", job.prints_idl, "print the types of all messages as IDL and end");
   app.footer(kExamples);
   try {
     app.parse(argc, argv);
@@ -213,8 +153,13 @@ int run(int argc, char** argv) {
     return core::complain("samewhere", fmt::format("{} (see samewhere dds --help)", error.what()),
                           core::kBadInput);
   }
-  if (!job.lists_settings) return work(job);
-  core::print("{}", node::config_table());
+  if (job.lists_settings) {
+    core::print("{}", node::config_table());
+  } else if (job.prints_idl) {
+    core::print("{}", messages::idl_of(messages::message_types()));
+  } else {
+    return work(job);
+  }
   return core::kDone;
 }
 

@@ -10,13 +10,12 @@
 
 #include "message_traits.hpp"
 #include <samewhere/core/errors.hpp>
-#include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
-#include <samewhere/core/tum_file.hpp>
-#include <samewhere/library/convert.hpp>
+#include <samewhere/node/inputs.hpp>
 #include <samewhere/node/node_thread.hpp>
 #include <samewhere/node/topics.hpp>
+#include <samewhere/node/trajectory_file.hpp>
 
 namespace samewhere::ros1 {
 namespace {
@@ -63,6 +62,7 @@ class RosPublisher final : public node::Publisher {
         pose_(advertise<messages::PoseWithCovarianceStamped>(handle, node::kPoseTopic)),
         path_(advertise<messages::Path>(handle, node::kPathTopic)),
         landmarks_(advertise<messages::PointCloud2>(handle, node::kLandmarksTopic)),
+        grid_(advertise<messages::OccupancyGrid>(handle, node::kGridTopic)),
         diagnostics_(advertise<messages::DiagnosticArray>(handle, node::kDiagnosticsTopic)),
         status_(advertise<messages::String>(handle, node::kStatusTopic)) {}
 
@@ -72,6 +72,7 @@ class RosPublisher final : public node::Publisher {
   }
   void path(const messages::Path& message) override { publish(path_, message); }
   void landmarks(const messages::PointCloud2& message) override { publish(landmarks_, message); }
+  void grid(const messages::OccupancyGrid& message) override { publish(grid_, message); }
   void diagnostics(const messages::DiagnosticArray& message) override {
     publish(diagnostics_, message);
   }
@@ -96,80 +97,31 @@ class RosPublisher final : public node::Publisher {
   ros::Publisher pose_;
   ros::Publisher path_;
   ros::Publisher landmarks_;
+  ros::Publisher grid_;
   ros::Publisher diagnostics_;
   ros::Publisher status_;
 };
 
-class Inputs {
- public:
-  Inputs(ros::NodeHandle& handle, node::NodeThread& node) : handle_(handle), node_(node) {}
-
-  void subscribe(const node::Config& config) {
-    images(node::kImageTopic, node::Stream::kFirst, config.is_compressed);
-    infos(node::kCameraInfoTopic, node::Stream::kFirst);
-    if (config.cameras == node::Cameras::kDepth)
-      images(node::kDepthTopic, node::Stream::kSecond, false);
-    if (config.cameras == node::Cameras::kStereo) {
-      images(node::kRightImageTopic, node::Stream::kSecond, config.is_compressed);
-      infos(node::kRightCameraInfoTopic, node::Stream::kSecond);
-    }
-    take<messages::Odometry>(node::kOdometryTopic, "", [](const messages::Odometry& message) {
-      return node::OdometryIn{message};
-    });
-    transforms(node::kStaticTransformsTopic, true);
-    if (config.odometry_from_tf) transforms(node::kTransformsTopic, false);
-    take<messages::String>(node::kCommandTopic, "", [](const messages::String& message) {
-      return node::CommandIn{node::command_from(message.data), nullptr};
-    });
-  }
-
- private:
-  // A subtopic follows the remapping of its topic.
-  template <class M, class Convert>
-  void take(const node::NodeTopic& topic, const std::string& subtopic, const Convert& convert) {
+// The subscriptions of a node, which end with the subscribers.
+std::vector<ros::Subscriber> subscribe(ros::NodeHandle& handle, const node::Config& config,
+                                       node::NodeThread& node) {
+  std::vector<ros::Subscriber> subscribers;
+  node::subscribe_to_inputs(config, [&]<class M>(const node::Input<M>& input) {
     const boost::function<void(const boost::shared_ptr<const M>&)> receive =
-        [this, convert](const boost::shared_ptr<const M>& message) {
+        [&node, incoming_from = input.incoming_from](const boost::shared_ptr<const M>& message) {
           try {
-            node_.post(convert(*message));
+            node.post(incoming_from(*message));
           } catch (const core::InputError& error) {
             ROS_WARN("%s", error.what());
           }
         };
-    subscribers_.push_back(
-        handle_.subscribe<M>(handle_.resolveName(std::string(topic.name)) + subtopic,
-                             static_cast<std::uint32_t>(topic.quality.depth), receive,
-                             ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
-  }
-
-  void images(const node::NodeTopic& topic, node::Stream stream, bool is_compressed) {
-    if (is_compressed) {
-      take<messages::CompressedImage>(topic, "/compressed",
-                                      [stream](const messages::CompressedImage& message) {
-                                        return node::ImageIn{stream, message};
-                                      });
-    } else {
-      take<messages::Image>(topic, "", [stream](const messages::Image& message) {
-        return node::ImageIn{stream, message};
-      });
-    }
-  }
-
-  void infos(const node::NodeTopic& topic, node::Stream stream) {
-    take<messages::CameraInfo>(topic, "", [stream](const messages::CameraInfo& message) {
-      return node::CameraInfoIn{stream, message};
-    });
-  }
-
-  void transforms(const node::NodeTopic& topic, bool is_static) {
-    take<messages::TFMessage>(topic, "", [is_static](const messages::TFMessage& message) {
-      return node::TransformsIn{message, is_static};
-    });
-  }
-
-  ros::NodeHandle& handle_;
-  node::NodeThread& node_;
-  std::vector<ros::Subscriber> subscribers_;
-};
+    const std::string name = handle.resolveName(std::string(input.topic.name));
+    subscribers.push_back(handle.subscribe<M>(
+        name + std::string(input.subtopic), static_cast<std::uint32_t>(input.topic.quality.depth),
+        receive, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+  });
+  return subscribers;
+}
 
 // save_map, load_map and localize take the file from the parameter ~map_file.
 class Services {
@@ -213,13 +165,6 @@ class Services {
   std::vector<ros::ServiceServer> servers_;
 };
 
-void write_trajectory(const std::string& path, const std::vector<StampedPose>& poses) {
-  core::Trajectory trajectory;
-  for (const StampedPose& pose : poses)
-    trajectory.push_back({pose.stamp_s, library::rigid_of(pose.map_from_camera)});
-  core::write_file(path, core::tum_text(trajectory));
-}
-
 int run() {
   ros::NodeHandle handle;
   ros::NodeHandle own("~");
@@ -233,8 +178,7 @@ int run() {
   core::catch_interrupts();
   RosPublisher publisher(handle);
   node::NodeThread node(config, options, publisher);
-  Inputs inputs(handle, node);
-  inputs.subscribe(config);
+  const std::vector<ros::Subscriber> subscribers = subscribe(handle, config, node);
   const Services services(own, node);
   constexpr std::uint32_t kThreads = 2;  // a service waits for its answer while images come
   ros::AsyncSpinner spinner(kThreads);
@@ -247,7 +191,7 @@ int run() {
   spinner.stop();
   const std::vector<StampedPose> poses = node.finish();
   const std::string trajectory = own.param<std::string>("trajectory", "");
-  if (!trajectory.empty()) write_trajectory(trajectory, poses);
+  if (!trajectory.empty()) node::write_trajectory(trajectory, poses);
   ros::shutdown();
   return core::kDone;
 }

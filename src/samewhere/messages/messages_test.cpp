@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/messages/idl.hpp>
 #include <samewhere/messages/types.hpp>
 
 namespace samewhere::messages {
@@ -125,6 +126,18 @@ TEST(MessageTypes, HaveDefinitionsWithAllTheirParts) {
               HasSubstr("float64[9] K\nfloat64[9] R\nfloat64[12] P\n"));
   EXPECT_THAT(full_definition(type_of<Image>(), Layout::kRos1),
               HasSubstr("MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"));
+}
+
+TEST(Idl, HasTheNamesOfRos2InDds) {
+  const std::string idl = idl_of(message_types());
+  EXPECT_THAT(idl, HasSubstr("module sensor_msgs { module msg { module dds_ {\n"
+                             "  struct CompressedImage_ {\n"
+                             "    std_msgs::msg::dds_::Header_ header_;\n"
+                             "    string format_;\n"
+                             "    sequence<octet> data_;\n"
+                             "  };\n}; }; };\n"));
+  EXPECT_THAT(idl, HasSubstr("    double k_[9];\n"));
+  EXPECT_THAT(idl, HasSubstr("sequence<geometry_msgs::msg::dds_::TransformStamped_> transforms_;"));
 }
 
 }  // namespace

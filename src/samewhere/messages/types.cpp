@@ -100,24 +100,6 @@ constexpr std::array kTypes = {
                 "60810da900de1dd6ddd437c3503511da"},
 };
 
-// One line of a definition: `type name`.
-struct FieldLine {
-  std::string_view type;
-  std::string_view name;
-};
-
-std::vector<FieldLine> lines_of(const MessageType& type) {
-  std::vector<FieldLine> lines;
-  std::string_view rest = type.fields;
-  while (!rest.empty()) {
-    const std::size_t blank = rest.find(' ');
-    const std::size_t end = rest.find('\n');
-    lines.push_back({rest.substr(0, blank), rest.substr(blank + 1, end - blank - 1)});
-    rest.remove_prefix(end + 1);
-  }
-  return lines;
-}
-
 // Without the brackets of an array; empty: a type of no package.
 std::string_view package_type_of(const FieldLine& line) {
   if (line.type.find('/') == std::string_view::npos) return {};
@@ -127,7 +109,7 @@ std::string_view package_type_of(const FieldLine& line) {
 // In ROS 1 the matrices of a camera have large letters, and time is a type of the language.
 std::string ros1_fields(const MessageType& type) {
   std::string text = type.name == "Header" ? "uint32 seq\n" : "";
-  for (const FieldLine& line : lines_of(type)) {
+  for (const FieldLine& line : fields_of(type)) {
     std::string name(line.name);
     const bool is_matrix = type.name == "CameraInfo" && name.size() == 1;
     if (is_matrix) name[0] = static_cast<char>(name[0] - 'a' + 'A');
@@ -143,7 +125,7 @@ std::string own_definition(const MessageType& type, Layout layout) {
 
 // Those in `type`, each once, in the order in which they are met.
 void collect(const MessageType& type, Layout layout, std::vector<const MessageType*>& found) {
-  for (const FieldLine& line : lines_of(type)) {
+  for (const FieldLine& line : fields_of(type)) {
     const std::string_view name = package_type_of(line);
     if (name.empty() || (layout == Layout::kRos1 && name == "builtin_interfaces/Time")) continue;
     const MessageType* const part = find_message_type(name);
@@ -161,6 +143,18 @@ std::string MessageType::ros2_name() const {
 }
 
 std::string MessageType::ros1_name() const { return std::string(package).append("/").append(name); }
+
+std::vector<FieldLine> fields_of(const MessageType& type) {
+  std::vector<FieldLine> lines;
+  std::string_view rest = type.fields;
+  while (!rest.empty()) {
+    const std::size_t blank = rest.find(' ');
+    const std::size_t end = rest.find('\n');
+    lines.push_back({rest.substr(0, blank), rest.substr(blank + 1, end - blank - 1)});
+    rest.remove_prefix(end + 1);
+  }
+  return lines;
+}
 
 std::span<const MessageType> message_types() { return kTypes; }
 

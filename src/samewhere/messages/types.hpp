@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <samewhere/messages/messages.hpp>
 
@@ -18,6 +19,13 @@ struct MessageType {
   std::string ros2_name() const;  // sensor_msgs/msg/Image
   std::string ros1_name() const;  // sensor_msgs/Image
 };
+
+// One line of a definition.
+struct FieldLine {
+  std::string_view type;  // float64[9]
+  std::string_view name;
+};
+std::vector<FieldLine> fields_of(const MessageType& type);
 
 // All that this folder knows, those first of which others are made.
 std::span<const MessageType> message_types();
