@@ -1,13 +1,18 @@
 #include <algorithm>
+#include <chrono>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <samewhere/bags/bag.hpp>
+#include <samewhere/bags/chunked_reader.hpp>
 #include <samewhere/bags/compression.hpp>
 #include <samewhere/bags/mcap_format.hpp>
+#include <samewhere/bags/ros1_format.hpp>
 #include <samewhere/bags/test_bag.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
@@ -156,17 +161,91 @@ TEST(Bag, NoByteThatIsChangedDoesMoreThanAnError) {
   }
 }
 
+std::string mcap_chunk(std::uint64_t size, std::string_view compression, std::string_view packed) {
+  ByteWriter chunk;
+  chunk.number(std::int64_t{0}).number(std::int64_t{1}).number(size);
+  chunk.number(std::uint32_t{0}).text(compression).number(std::uint64_t{packed.size()});
+  return mcap::record(mcap::Kind::kChunk, chunk.bytes(packed).view());
+}
+
 // A chunk that claims 4 GB takes no memory.
 TEST(Bag, AChunkThatClaimsTooMuchIsRefused) {
   const BagFolder folder;
-  ByteWriter chunk;
-  chunk.number(std::int64_t{0}).number(std::int64_t{1}).number(std::uint64_t{4'000'000'000});
-  chunk.number(std::uint32_t{0}).text("zstd").number(std::uint64_t{4}).bytes("abcd");
   core::write_file(folder.at("bag"),
-                   std::string(mcap::kMagic) + mcap::record(mcap::Kind::kChunk, chunk.view()));
+                   std::string(mcap::kMagic) + mcap_chunk(4'000'000'000, "zstd", "abcd"));
   const auto bag = open_bag(folder.at("bag"));
   EXPECT_THAT(bag->info().damage, HasSubstr("4000000000"));
   EXPECT_THROW(all_messages(*bag), core::InputError);
+}
+
+// Each of a thousand chunks claims 500 MB and has a few bytes: what is claimed is not filled.
+TEST(Bag, ManyChunksThatClaimTooMuchAreToldAtOnce) {
+  const BagFolder folder;
+  for (const Compression method : {Compression::kLz4, Compression::kZstd, Compression::kBz2}) {
+    const std::string packed = compress("abcd", method);
+    std::string whole(mcap::kMagic);
+    for (int i = 0; i < 1000; ++i) whole += mcap_chunk(500'000'000, name_of(method), packed);
+    core::write_file(folder.at("bag"), whole);
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_THAT(open_bag(folder.at("bag"))->info().damage, HasSubstr("is damaged"));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  }
+}
+
+TEST(Compression, WhatUnpacksToMuchMoreIsReadWhole) {
+  const std::string zeros(20'000'000, '\0');
+  for (const Compression method : {Compression::kLz4, Compression::kZstd, Compression::kBz2}) {
+    const std::string packed = compress(zeros, method);
+    const std::string_view name = name_of(method);
+    EXPECT_TRUE(decompress(packed, name, zeros.size()) == zeros) << name;
+    EXPECT_THROW(decompress(packed, name, zeros.size() - 1), core::InputError) << name;
+    EXPECT_THROW(decompress(packed, name, zeros.size() + 1), core::InputError) << name;
+    EXPECT_THROW(decompress(packed.substr(0, packed.size() / 2), name, zeros.size()),
+                 core::InputError)
+        << name;
+    EXPECT_THROW(decompress("", name, 1), core::InputError) << name;
+  }
+}
+
+// A message without chunks around it that is too short for its header, and one without a time.
+TEST(Bag, AMessageThatIsDamagedIsLeftOutAndSaid) {
+  const BagFolder folder;
+  ByteWriter channel, good, late;
+  channel.number(std::uint16_t{1}).number(std::uint16_t{0}).text("/name").text("cdr");
+  good.number(std::uint16_t{1}).number(std::uint32_t{0}).number(std::int64_t{7}).number(7LL);
+  late.number(std::uint16_t{1}).number(std::uint32_t{0}).number(~std::uint64_t{0}).number(7LL);
+  const std::string whole =
+      std::string(mcap::kMagic) + mcap::record(mcap::Kind::kChannel, channel.view()) +
+      mcap::record(mcap::Kind::kMessage, "short") + mcap::record(mcap::Kind::kMessage, good.view());
+  for (const std::string& after : {mcap::record(mcap::Kind::kMessage, late.view()),
+                                   mcap::record(mcap::Kind::kSchema, "short")}) {
+    core::write_file(folder.at("bag"), whole + after);
+    const auto bag = open_bag(folder.at("bag"));
+    EXPECT_THAT(bag->info().damage, HasSubstr("is damaged at byte"));
+    EXPECT_EQ(bag->info().last_ns, 7);
+    EXPECT_THAT(all_messages(*bag), SizeIs(1));
+  }
+}
+
+// An index that names one chunk many times would have it unpacked as often.
+TEST(Bag, ChunksThatOverlapAreNotReadByTheIndex) {
+  EXPECT_FALSE(do_overlap({{.offset = 100, .length = 50}, {.offset = 0, .length = 100}}));
+  EXPECT_TRUE(do_overlap({{.offset = 100, .length = 50}, {.offset = 0, .length = 101}}));
+  EXPECT_TRUE(do_overlap({{.offset = 100, .length = 50}, {.offset = 100, .length = 50}}));
+}
+
+TEST(Bag, FieldsOfTooManyBytesAreRefused) {
+  EXPECT_THROW(ros1::read_fields(std::string(ros1::kMaxHeaderSize + 1, '\0')), core::InputError);
+}
+
+TEST(Bag, TimesOfSqliteBeforeZeroAreRefused) {
+  const BagFolder folder;
+  const auto bag = make_bag(folder.at("bag"), BagFormat::kSqlite, Compression::kNone);
+  const int names = bag->add_topic<messages::String>("/name");
+  bag->write_message(names, std::numeric_limits<std::int64_t>::min(), messages::String{"a"});
+  bag->write_message(names, 7, messages::String{"b"});
+  bag->finish();
+  EXPECT_THROW(open_bag(folder.at("bag")), core::InputError);
 }
 
 // 64 GB without a disk for them: nothing is read twice, and no memory is taken.

@@ -16,6 +16,14 @@ constexpr std::size_t kMaxActiveSize = std::size_t{2} << 30;
 
 }  // namespace
 
+bool do_overlap(std::vector<Chunk> chunks) {
+  std::sort(chunks.begin(), chunks.end(),
+            [](const Chunk& a, const Chunk& b) { return a.offset < b.offset; });
+  return std::adjacent_find(chunks.begin(), chunks.end(), [](const Chunk& a, const Chunk& b) {
+           return b.offset - a.offset < a.length;
+         }) != chunks.end();
+}
+
 void ChunkedReader::fail(std::string_view reason) const {
   throw core::InputError(fmt::format("{}: {}", file_.path().string(), reason));
 }

@@ -19,6 +19,10 @@ struct Chunk {
   std::int64_t last_ns = 0;
 };
 
+// Whether bytes of the file belong to two chunks. No recorder writes that; a forged index would
+// have one chunk unpacked any number of times.
+bool do_overlap(std::vector<Chunk> chunks);
+
 // A message in a chunk that was read.
 struct ChunkEntry {
   std::int64_t log_time_ns = 0;

@@ -1,4 +1,4 @@
-#include <array>
+#include <algorithm>
 #include <memory>
 
 #include <bzlib.h>
@@ -25,7 +25,16 @@ void require_size(std::string_view method, std::uint64_t got, std::uint64_t expe
   }
 }
 
+// Memory is taken for what the bytes can become, not for what is claimed.
+void require_possible(std::string_view method, std::string_view packed, std::size_t size,
+                      std::size_t max_ratio) {
+  if (size / max_ratio <= packed.size()) return;
+  fail_packed(method, fmt::format("its header says that {} bytes become {}", packed.size(), size));
+}
+
 std::string unpack_lz4(std::string_view packed, std::size_t size) {
+  constexpr std::size_t kMaxRatio = 255;  // a byte of a length adds so many
+  require_possible("lz4", packed, size, kMaxRatio);
   LZ4F_dctx* made = nullptr;
   core::require(LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION)) == 0,
                 "lz4 gives a decoder");
@@ -49,6 +58,8 @@ std::string unpack_lz4(std::string_view packed, std::size_t size) {
 }
 
 std::string unpack_zstd(std::string_view packed, std::size_t size) {
+  constexpr std::size_t kMaxRatio = 128 * 1024 / 4;  // the smallest block and what it becomes
+  require_possible("zstd", packed, size, kMaxRatio);
   std::string bytes(size, '\0');
   // more frames than one are allowed, and padding behind them
   const std::size_t got = ZSTD_decompress(bytes.data(), size, packed.data(), packed.size());
@@ -62,13 +73,30 @@ std::string unpack_zstd(std::string_view packed, std::size_t size) {
   return unpack_zstd(packed.substr(0, frame), size);
 }
 
+// Few bytes may become 46 MB, so that memory is taken as they come out.
 std::string unpack_bz2(std::string_view packed, std::size_t size) {
-  std::string bytes(size, '\0');
-  auto filled = static_cast<unsigned>(size);
-  const int code = BZ2_bzBuffToBuffDecompress(bytes.data(), &filled,
-                                              const_cast<char*>(packed.data()),  // read alone
-                                              static_cast<unsigned>(packed.size()), 0, 0);
-  if (code != BZ_OK) fail_packed("bz2", fmt::format("error {}", code));
+  constexpr std::size_t kUsualRatio = 32;
+  bz_stream stream{};
+  core::require(BZ2_bzDecompressInit(&stream, 0, 0) == BZ_OK, "bz2 gives a decoder");
+  const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> decoder(&stream,
+                                                                           &BZ2_bzDecompressEnd);
+  std::string bytes(std::min(size, kUsualRatio * packed.size()), '\0');
+  std::size_t filled = 0;
+  stream.next_in = const_cast<char*>(packed.data());  // read alone
+  stream.avail_in = static_cast<unsigned>(packed.size());
+  while (true) {
+    if (filled == bytes.size()) bytes.resize(std::min(size, 2 * bytes.size()));
+    const unsigned left = stream.avail_in;
+    stream.next_out = bytes.data() + filled;
+    stream.avail_out = static_cast<unsigned>(bytes.size() - filled);
+    const int code = BZ2_bzDecompress(&stream);
+    const auto filled_now = bytes.size() - stream.avail_out;
+    const bool is_stuck = filled_now == filled && stream.avail_in == left;
+    filled = filled_now;
+    if (code == BZ_STREAM_END) break;
+    if (code != BZ_OK) fail_packed("bz2", fmt::format("error {}", code));
+    if (is_stuck) fail_packed("bz2", "it does not end where its header says");
+  }
   require_size("bz2", filled, size);
   return bytes;
 }

@@ -1,6 +1,20 @@
 #include <samewhere/bags/mcap_format.hpp>
 
 namespace samewhere::bags::mcap {
+namespace {
+
+// Of messages; stored without a sign. Those of chunks are not checked: they only put chunks in
+// order, and of a chunk without messages some recorders write the largest number.
+std::int64_t take_time_ns(ByteReader& bytes) {
+  const auto time_ns = bytes.number<std::int64_t>();
+  if (time_ns < 0) {
+    throw core::InputError(fmt::format("a time of {} ns, expected one before the year 2262",
+                                       static_cast<std::uint64_t>(time_ns)));
+  }
+  return time_ns;
+}
+
+}  // namespace
 
 Schema read_schema(std::string_view content) {
   ByteReader bytes(content);
@@ -56,8 +70,8 @@ Statistics read_statistics(std::string_view content) {
   bytes.number<std::uint32_t>();  // attachments
   bytes.number<std::uint32_t>();  // metadata
   statistics.num_chunks = bytes.number<std::uint32_t>();
-  statistics.first_ns = bytes.number<std::int64_t>();
-  statistics.last_ns = bytes.number<std::int64_t>();
+  statistics.first_ns = take_time_ns(bytes);
+  statistics.last_ns = take_time_ns(bytes);
   ByteReader counts(bytes.text());
   while (!counts.is_empty()) {
     const auto channel = counts.number<std::uint16_t>();
@@ -71,7 +85,7 @@ MessageHeader read_message_header(std::string_view content) {
   MessageHeader header;
   header.channel = bytes.number<std::uint16_t>();
   bytes.number<std::uint32_t>();  // sequence
-  header.log_time_ns = bytes.number<std::int64_t>();
+  header.log_time_ns = take_time_ns(bytes);
   bytes.number<std::int64_t>();  // publish time
   return header;
 }

@@ -144,7 +144,7 @@ class McapReader : public ChunkedReader {
     });
     const bool has_chunks =
         !content.chunks.empty() && content.chunks.size() == content.statistics.num_chunks;
-    if (!has_channels || !has_chunks) return std::nullopt;
+    if (!has_channels || !has_chunks || do_overlap(content.chunks)) return std::nullopt;
     return content;
   }
 
@@ -175,7 +175,12 @@ class McapReader : public ChunkedReader {
       }
       const auto kind = static_cast<Kind>(file().read(offset, 1).front());
       if (kind == Kind::kFooter) return content;
-      note_record(kind, offset, *length, content);
+      try {
+        note_record(kind, offset, *length, content);
+      } catch (const InputError& error) {
+        if (content.damage.empty())
+          content.damage = fmt::format("is damaged at byte {}: {}", offset, error.what());
+      }
       offset += *length;
     }
     content.is_closed = false;
@@ -198,16 +203,14 @@ class McapReader : public ChunkedReader {
     if (kind == Kind::kMessage) return note_loose_message(offset, length, content);
     if (kind == Kind::kChunk) return note_chunk(offset, length, content);
     if (kind != Kind::kSchema && kind != Kind::kChannel) return;
-    if (length > kMaxRecordSize)
-      fail(fmt::format("a record of {} bytes at byte {}", length, offset));
+    if (length > kMaxRecordSize) throw InputError(fmt::format("a record of {} bytes", length));
     const std::string bytes = file().read(offset, length);
     ByteReader rest(bytes);
     content.note(take_record(rest));
   }
 
   void note_loose_message(std::uint64_t offset, std::uint64_t length, Content& content) const {
-    if (length > kMaxChunkSize)
-      fail(fmt::format("a message of {} bytes at byte {}", length, offset));
+    if (length > kMaxChunkSize) throw InputError(fmt::format("a message of {} bytes", length));
     const std::string bytes = file().read(
         offset,
         std::min<std::uint64_t>(length, mcap::kRecordHeaderSize + mcap::kMessageHeaderSize));
@@ -232,28 +235,22 @@ class McapReader : public ChunkedReader {
   void note_chunk(std::uint64_t offset, std::uint64_t length, Content& content) const {
     content.ends_loose = false;
     const std::int64_t before_ns = content.chunks.empty() ? 0 : content.chunks.back().last_ns;
-    Chunk chunk{offset, length, before_ns, before_ns};
-    try {
-      if (length > kMaxChunkSize) throw InputError("a chunk that is too large");
-      const std::string record = file().read(offset, length);
-      ByteReader whole(record);
-      const mcap::ChunkHeader header = mcap::read_chunk_header(take_record(whole).content);
-      chunk.first_ns = header.first_ns;
-      chunk.last_ns = header.last_ns;
-      content.compression = header.compression;
-      ++content.statistics.num_chunks;
-      const std::string bytes = unpack(header);
-      ByteReader rest(bytes);
-      while (!rest.is_empty()) {
-        const Record inner = take_record(rest);
-        content.note(inner);
-        if (inner.kind == Kind::kMessage) content.count(mcap::read_message_header(inner.content));
-      }
-    } catch (const InputError& error) {
-      if (content.damage.empty())
-        content.damage = fmt::format("is damaged at byte {}: {}", offset, error.what());
+    content.chunks.push_back({offset, length, before_ns, before_ns});
+    if (length > kMaxChunkSize) throw InputError("a chunk that is too large");
+    const std::string record = file().read(offset, length);
+    ByteReader whole(record);
+    const mcap::ChunkHeader header = mcap::read_chunk_header(take_record(whole).content);
+    content.chunks.back().first_ns = header.first_ns;
+    content.chunks.back().last_ns = header.last_ns;
+    content.compression = header.compression;
+    ++content.statistics.num_chunks;
+    const std::string bytes = unpack(header);
+    ByteReader rest(bytes);
+    while (!rest.is_empty()) {
+      const Record inner = take_record(rest);
+      content.note(inner);
+      if (inner.kind == Kind::kMessage) content.count(mcap::read_message_header(inner.content));
     }
-    content.chunks.push_back(chunk);
   }
 
   void take(Content content) {

@@ -5,6 +5,9 @@ namespace samewhere::bags::ros1 {
 
 Fields read_fields(std::string_view bytes) {
   Fields fields;
+  if (bytes.size() > kMaxHeaderSize)
+    throw core::InputError(
+        fmt::format("fields of {} bytes, expected at most {}", bytes.size(), kMaxHeaderSize));
   ByteReader rest(bytes);
   while (!rest.is_empty()) {
     const std::string_view entry = rest.text();

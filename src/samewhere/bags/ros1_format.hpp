@@ -16,6 +16,9 @@ inline constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
 inline constexpr std::size_t kBagHeaderSize = 4096;
 
 enum class Op : std::uint8_t {
+// More than the fields of any record. Each takes several times its bytes of memory.
+inline constexpr std::uint64_t kMaxHeaderSize = std::uint64_t{16} << 20;
+
   kMessage = 0x02,
   kBagHeader = 0x03,
   kIndex = 0x04,

@@ -19,8 +19,6 @@ namespace {
 using core::InputError;
 using ros1::Op;
 
-constexpr std::uint64_t kMaxHeaderSize = std::uint64_t{16} << 20;
-
 struct Connection {
   std::string topic;
   std::string type;
@@ -119,7 +117,7 @@ class Ros1Reader : public ChunkedReader {
   ros1::Fields header_at(std::uint64_t offset) const {
     const std::string length = file().read(offset, sizeof(std::uint32_t));
     const auto size = ByteReader(length).number<std::uint32_t>();
-    if (size > kMaxHeaderSize) throw InputError("a header that is too large");
+    if (size > ros1::kMaxHeaderSize) throw InputError("a header that is too large");
     return ros1::read_fields(file().read(offset + sizeof(std::uint32_t), size));
   }
 
@@ -129,7 +127,7 @@ class Ros1Reader : public ChunkedReader {
     BagContent content;
     while (offset < file().size()) {
       const auto length = record_length(offset);
-      if (!length || *length > kMaxHeaderSize) throw InputError("an index that is cut");
+      if (!length || *length > ros1::kMaxHeaderSize) throw InputError("an index that is cut");
       const std::string bytes = file().read(offset, *length);
       ByteReader rest(bytes);
       const ros1::Record record = ros1::take_record(rest);
@@ -137,6 +135,7 @@ class Ros1Reader : public ChunkedReader {
       if (ros1::op_of(record.header) == Op::kChunkInfo) note_chunk_info(record, content);
       offset += *length;
     }
+    if (do_overlap(content.chunks)) throw InputError("chunks that overlap");
     if (!content.chunks.empty())
       content.compression = ros1::field(header_at(content.chunks.front().offset), "compression");
     return content;

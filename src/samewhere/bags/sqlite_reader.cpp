@@ -29,8 +29,8 @@ class SqliteReader : public BagReader {
     info_.num_messages =
         static_cast<std::uint64_t>(database_.number("SELECT count(*) FROM messages"));
     if (info_.num_messages == 0) return;
-    info_.first_ns = database_.number("SELECT min(timestamp) FROM messages");
-    info_.last_ns = database_.number("SELECT max(timestamp) FROM messages");
+    info_.first_ns = time_ns(database_.number("SELECT min(timestamp) FROM messages"));
+    info_.last_ns = time_ns(database_.number("SELECT max(timestamp) FROM messages"));
     if (first_bytes().starts_with(kZstdMagic)) info_.compression = "zstd";
   }
 
@@ -40,11 +40,12 @@ class SqliteReader : public BagReader {
   void start(const std::vector<int>& topics) override {
     is_selected_.assign(topics_.size(), false);
     for (const int topic : topics) is_selected_.at(static_cast<std::size_t>(topic)) = true;
-    // sorted by numbers alone: the messages may be larger than the memory
+    // Sorted by numbers alone: the messages may be larger than the memory. By rowid, which `id` is:
+    // where it is not the key of the table, each message would be searched in all of it.
     order_.emplace(
-        database_.prepare("SELECT id, topic_id, timestamp FROM messages "
-                          "ORDER BY timestamp, id"));
-    data_.emplace(database_.prepare("SELECT data FROM messages WHERE id = ?1"));
+        database_.prepare("SELECT rowid, topic_id, timestamp FROM messages "
+                          "ORDER BY timestamp, rowid"));
+    data_.emplace(database_.prepare("SELECT data FROM messages WHERE rowid = ?1"));
   }
 
   std::optional<Message> next() override {
@@ -54,7 +55,7 @@ class SqliteReader : public BagReader {
       if (topic == topic_of_id_.end()) fail("a message of a topic that is not in its table");
       if (!is_selected_[static_cast<std::size_t>(topic->second)]) continue;
       return Message{.topic = topic->second,
-                     .log_time_ns = order_->number(2),
+                     .log_time_ns = time_ns(order_->number(2)),
                      .bytes = read_data(order_->number(0))};
     }
     order_.reset();
@@ -64,6 +65,11 @@ class SqliteReader : public BagReader {
  private:
   [[noreturn]] void fail(std::string_view reason) const {
     throw InputError(fmt::format("{}: {}", database_.path().string(), reason));
+  }
+
+  std::int64_t time_ns(std::int64_t stored) const {
+    if (stored < 0) fail(fmt::format("has a message of time {} ns, expected 0 or later", stored));
+    return stored;
   }
 
   void require_tables() {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -117,6 +118,11 @@ cv::Mat metres_from_quantized(const cv::Mat& stored, const DepthHeader& header) 
   return metres_from_floats(depth_m);
 }
 
+// Of a side; one that no picture has stays one that no picture has.
+int whole_pixels(double count) {
+  return static_cast<int>(std::min(count, double{std::numeric_limits<int>::max()}));
+}
+
 // Numbers of a calibration for the part of the picture that was taken.
 template <class Camera>
 void crop_and_bin(const messages::CameraInfo& info, Camera& camera) {
@@ -125,8 +131,8 @@ void crop_and_bin(const messages::CameraInfo& info, Camera& camera) {
   const bool is_cropped = info.roi.width > 0 && info.roi.height > 0;
   const double width = is_cropped ? info.roi.width : info.width;
   const double height = is_cropped ? info.roi.height : info.height;
-  camera.width_px = static_cast<int>(width / bin_x);
-  camera.height_px = static_cast<int>(height / bin_y);
+  camera.width_px = whole_pixels(width / bin_x);
+  camera.height_px = whole_pixels(height / bin_y);
   // pixels have their centres at whole numbers: of a block of n, at (n - 1) / 2
   camera.fx_px /= bin_x;
   camera.fy_px /= bin_y;

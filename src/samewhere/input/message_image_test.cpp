@@ -291,6 +291,15 @@ TEST(MessageCamera, KnowsNoneAndRefusesOthers) {
   EXPECT_THROW(camera_of(camera_info("plumb_bob", {1e9}), false, "a"), InputError);
 }
 
+TEST(MessageCamera, OfTooManyPixelsIsRefused) {
+  for (const std::uint32_t side_px : {100'001U, 0x7fff'ffffU, 0x8000'0000U, 0xffff'ffffU}) {
+    messages::CameraInfo info = camera_info("plumb_bob", {});
+    info.width = side_px;
+    EXPECT_THAT(complaint([&info] { camera_of(info, false, "a"); }), HasSubstr("pictures of"));
+    EXPECT_THAT(complaint([&info] { camera_of(info, true, "a"); }), HasSubstr("pictures of"));
+  }
+}
+
 // A picture of which each pixel is the mean of two by two: its centres lie half a pixel aside.
 TEST(MessageCamera, OfACroppedAndBinnedPictureHasItsPixels) {
   messages::CameraInfo info = camera_info("plumb_bob", {});
