@@ -28,6 +28,13 @@ if(SAMEWHERE_SANITIZE)
   # Eigen would give out memory in another way than in Ceres, which is built without sanitizers: one must free what the other took
   target_compile_definitions(samewhere_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
+if(SAMEWHERE_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "SAMEWHERE_FUZZ=ON needs clang, found ${CMAKE_CXX_COMPILER_ID}: -DCMAKE_CXX_COMPILER=clang++, or scripts/fuzz.")
+  endif()
+  # libFuzzer is told of every branch; whatever a sanitizer finds ends the program
+  target_compile_options(samewhere_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=all)
+endif()
 
 function(samewhere_folder NAME)
   cmake_parse_arguments(FOLDER "" "" "LINKS;TEST_LINKS" ${ARGN})
@@ -72,7 +79,7 @@ endfunction()
 # those with threads with the thread sanitizer too. The others would take too long to build and to run with them.
 set(samewhere_asan_tests core input scene features dense describe)
 list(TRANSFORM samewhere_asan_tests REPLACE "(.+)" "samewhere_\\1_test")
-list(APPEND samewhere_asan_tests cli_test formats_test)
+list(APPEND samewhere_asan_tests cli_test formats_test fuzz_corpus_test)
 set(samewhere_tsan_tests samewhere_core_test samewhere_input_test recognition_threads_test slam_threads_test)
 # run first, because they take longest
 set(samewhere_long_tests golden_test cli_walks_test samewhere_pipeline_test cli_test slam_threads_test)
