@@ -313,6 +313,10 @@ TEST(Bag, TimesMayBeginAtZero) {
     bag->finish();
     EXPECT_EQ(open_bag(folder.at("bag"))->info().first_ns, 0);
     EXPECT_EQ(open_bag(folder.at("bag"))->info().last_ns, 7);
+    if (kind.format != BagFormat::kRos1) continue;
+    const std::string bytes = core::read_file(folder.at("bag"));
+    EXPECT_EQ(bytes.find(std::string("time=") + std::string(8, '\0')), std::string::npos)
+        << "rosbag leaves out messages of time 0";
   }
 }
 

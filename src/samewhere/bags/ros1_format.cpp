@@ -1,13 +1,14 @@
+#include <algorithm>
+
 #include <samewhere/bags/ros1_format.hpp>
-#include <samewhere/messages/messages.hpp>
 
 namespace samewhere::bags::ros1 {
 
 Fields read_fields(std::string_view bytes) {
-  Fields fields;
   if (bytes.size() > kMaxHeaderSize)
     throw core::InputError(
         fmt::format("fields of {} bytes, expected at most {}", bytes.size(), kMaxHeaderSize));
+  Fields fields;
   ByteReader rest(bytes);
   while (!rest.is_empty()) {
     const std::string_view entry = rest.text();
@@ -36,7 +37,13 @@ Op op_of(const Fields& header) { return static_cast<Op>(number_of<std::uint8_t>(
 std::int64_t time_ns_of(const Fields& header, std::string_view name) {
   ByteReader bytes(field(header, name));
   const auto seconds = bytes.number<std::uint32_t>();
-  return std::int64_t{seconds} * 1'000'000'000 + bytes.number<std::uint32_t>();
+  const std::int64_t time_ns =
+      std::int64_t{seconds} * 1'000'000'000 + bytes.number<std::uint32_t>();
+  return time_ns == kLeastTime_ns ? 0 : time_ns;
+}
+
+messages::Time recorded_time(std::int64_t time_ns) {
+  return messages::time_of_nanoseconds(std::max(time_ns, kLeastTime_ns));
 }
 
 HeaderWriter& HeaderWriter::text(std::string_view name, std::string_view value) {
@@ -46,7 +53,7 @@ HeaderWriter& HeaderWriter::text(std::string_view name, std::string_view value) 
 }
 
 HeaderWriter& HeaderWriter::time(std::string_view name, std::int64_t time_ns) {
-  const messages::Time time = messages::time_of_nanoseconds(time_ns);
+  const messages::Time time = recorded_time(time_ns);
   ByteWriter value;
   value.number(time.sec).number(time.nanosec);
   return text(name, value.view());

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <samewhere/bags/bytes.hpp>
+#include <samewhere/messages/messages.hpp>
 
 // Records of a ROS 1 bag, as its format 2.0 is described (wiki.ros.org/Bags/Format/2.0): a header
 // of fields `name=value` and data, each with its length of four bytes before it.
@@ -15,10 +16,10 @@ inline constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
 // The record after it is filled up with blanks to this size, so that it can be written at the end.
 inline constexpr std::size_t kBagHeaderSize = 4096;
 
-enum class Op : std::uint8_t {
 // More than the fields of any record. Each takes several times its bytes of memory.
 inline constexpr std::uint64_t kMaxHeaderSize = std::uint64_t{16} << 20;
 
+enum class Op : std::uint8_t {
   kMessage = 0x02,
   kBagHeader = 0x03,
   kIndex = 0x04,
@@ -44,6 +45,10 @@ template <class T>
 T number_of(const Fields& header, std::string_view name) {
   return ByteReader(field(header, name)).number<T>();
 }
+// Time 0 stands for no time in ROS 1, and rosbag leaves out its messages: it is written as the
+// least time, and read back as 0.
+inline constexpr std::int64_t kLeastTime_ns = 1;
+messages::Time recorded_time(std::int64_t time_ns);
 std::int64_t time_ns_of(const Fields& header, std::string_view name);
 
 class HeaderWriter {

@@ -90,7 +90,7 @@ class Ros1Writer : public BagWriter {
       index.number("count", static_cast<std::uint32_t>(entries.size()));
       ByteWriter places;
       for (const auto& [time_ns, place] : entries) {
-        const messages::Time time = messages::time_of_nanoseconds(time_ns);
+        const messages::Time time = ros1::recorded_time(time_ns);
         places.number(time.sec).number(time.nanosec).number(place);
       }
       file_.write(index.record(places.view()));
