@@ -1,6 +1,5 @@
 #include <utility>
 
-#include <samewhere/core/background.hpp>
 #include <samewhere/node/grid_thread.hpp>
 
 namespace samewhere::node {
@@ -9,7 +8,6 @@ GridThread::GridThread(const dense::Config& config, bool has_thread, Publisher& 
     : config_(config), publisher_(publisher) {
   if (!has_thread) return;
   worker_.emplace([this] {
-    core::work_in_background();
     while (const std::optional<GridJob> job = jobs_.receive()) work(*job);
   });
 }

@@ -15,7 +15,7 @@ struct GridJob {
   SharedDepths depths;
 };
 
-// Makes occupancy grids beside tracking, with low priority; with `has_thread` false, in the
+// Makes occupancy grids beside tracking; with `has_thread` false, in the
 // caller's thread. A job that waits is replaced by a newer one.
 class GridThread {
  public:
