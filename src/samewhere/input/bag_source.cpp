@@ -32,6 +32,8 @@ using std::filesystem::path;
 constexpr double kDepthUnitsOfMessages_per_m = 1000.0;
 // Pictures that wait for partners: more do not come at once where a recording is in order.
 constexpr std::size_t kMaxWaiting = 30;
+// Partners that wait for pictures, which may come later by some seconds.
+constexpr std::size_t kMaxPartners = 100;
 // What arrives later than this was not recorded in order: another clock, or a recording played
 // twice.
 constexpr double kMaxBackwards_s = 1.0;
@@ -131,6 +133,11 @@ class BagSource : public core::Source {
       return;
     }
     queue.insert(place, std::move(picture));
+    // of pictures that have not begun, or have ended
+    if (waiting_.empty() && partners_.size() > kMaxPartners) {
+      partners_.pop_front();
+      ++num_unused_;
+    }
   }
 
   void check_color(const BagPicture& picture) const {
@@ -150,13 +157,13 @@ class BagSource : public core::Source {
 
   // Whether no message that is still to come can change the partner of the first picture.
   bool is_first_decided() const {
-    if (is_at_end_) return true;
-    if (waiting_.size() > kMaxWaiting) return true;
-    if (waiting_.size() < 2) return false;
-    if (partner_topic() < 0) return true;
+    if (is_at_end_ || waiting_.size() > kMaxWaiting) return true;
+    if (waiting_.empty()) return false;
+    if (partner_topic() < 0) return waiting_.size() > 1;
     const double due_s = waiting_.front().stamp_s + config_.max_stamp_difference_s;
-    return !partners_.empty() && partners_.back().stamp_s > due_s &&
-           waiting_.back().stamp_s > due_s;
+    if (partners_.empty() || partners_.back().stamp_s <= due_s) return false;
+    // many partners: the pictures have ended, and these have not
+    return waiting_.back().stamp_s > due_s || partners_.size() > kMaxPartners;
   }
 
   // Nothing if the first picture is left out.

@@ -65,7 +65,7 @@ class WrittenBag {
     image.width = image.height = static_cast<std::uint32_t>(size_px);
     const std::uint32_t bytes_per_pixel = image.encoding == "16UC1" ? 2 : 1;
     image.step = image.width * bytes_per_pixel;
-    image.data.assign(image.step * image.height, 1);
+    image.data.assign(std::size_t{image.step} * image.height, 1);
     return write(topic, image);
   }
   // As image_transport sends it: a PNG, behind twelve bytes where it is depth.
@@ -163,6 +163,19 @@ TEST(BagSource, DepthBelongsToTheNearestPictureInTime) {
   const GivenFrames given = frames_of(bag.path());
   EXPECT_THAT(given.stamps_s, ElementsAre(0.1, 0.2, 0.21, 0.4, 0.5));
   EXPECT_THAT(given.have_depth, ElementsAre(true, false, true, false, false));
+}
+
+TEST(BagSource, DepthMayBeginEarlierAndEndLaterThanThePictures) {
+  const TestFolder folder;
+  WrittenBag bag(folder.at("a.mcap"));
+  for (int i = 0; i < 300; ++i) {
+    bag.depth(0.01 * i);
+    if (i == 100 || i == 200) bag.color(0.01 * i + 0.001);
+  }
+  bag.finish();
+  const GivenFrames given = frames_of(bag.path());
+  EXPECT_THAT(given.stamps_s, ElementsAre(1.001, 2.001));
+  EXPECT_THAT(given.have_depth, ElementsAre(true, true));
 }
 
 TEST(BagSource, WithoutDepthItIsNotRead) {
