@@ -23,11 +23,10 @@ class SqliteReader : public BagReader {
  public:
   explicit SqliteReader(const std::filesystem::path& path)
       : database_(path, core::OpenMode::kRead) {
+    database_.limit_work();
     require_tables();
-    read_topics();
     info_ = {.format = "rosbag2 (SQLite)", .compression = "none", .damage = {}};
-    info_.num_messages =
-        static_cast<std::uint64_t>(database_.number("SELECT count(*) FROM messages"));
+    read_topics();
     if (info_.num_messages == 0) return;
     info_.first_ns = time_ns(database_.number("SELECT min(timestamp) FROM messages"));
     info_.last_ns = time_ns(database_.number("SELECT max(timestamp) FROM messages"));
@@ -100,13 +99,15 @@ class SqliteReader : public BagReader {
       topic_of_id_[id] = static_cast<int>(same - topics_.begin());
       if (same == topics_.end()) topics_.push_back(topic);
     }
+    // not `count(*)` of all: SQLite counts that without end where pages of a forged file do not end
     core::Statement counts =
         database_.prepare("SELECT topic_id, count(*) FROM messages GROUP BY topic_id");
     while (counts.step()) {
+      const auto count = static_cast<std::uint64_t>(counts.number(1));
+      info_.num_messages += count;
       const auto topic = topic_of_id_.find(counts.number(0));
       if (topic == topic_of_id_.end()) continue;  // told when it is read
-      topics_[static_cast<std::size_t>(topic->second)].num_messages +=
-          static_cast<std::uint64_t>(counts.number(1));
+      topics_[static_cast<std::size_t>(topic->second)].num_messages += count;
     }
   }
 

@@ -43,6 +43,8 @@ std::string meaning_of(int code, const char* message) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return "another program is writing it";
+    case SQLITE_INTERRUPT:
+      return "is damaged: its pages refer to each other without an end";
     default:
       return fmt::format("is damaged: {}", message);
   }
@@ -120,6 +122,20 @@ std::int64_t Database::number(const std::string& sql) {
   return statement.number(0);
 }
 
+void Database::limit_work() {
+  constexpr int kUnit_instructions = 100'000;
+  constexpr std::int64_t kLeast_units = 50;      // below a second
+  constexpr std::int64_t kBytesPerUnit = 1'000;  // 100 instructions a byte; sorting takes about one
+  const std::int64_t size_bytes = number("PRAGMA page_count") * number("PRAGMA page_size");
+  work_ = std::make_unique<Work>();
+  work_->max_units = kLeast_units + size_bytes / kBytesPerUnit;
+  const auto count = [](void* work) {
+    auto* const done = static_cast<Work*>(work);
+    return ++done->num_units > done->max_units ? 1 : 0;
+  };
+  sqlite3_progress_handler(connection_.get(), kUnit_instructions, count, work_.get());
+}
+
 void Database::check_pages() {
   Statement check = prepare("PRAGMA quick_check(1)");
   const std::string_view found = check.step() ? check.bytes(0) : "";
@@ -156,6 +172,7 @@ void Statement::bind_bytes(int parameter, std::string_view bytes) {
 }
 
 bool Statement::step() {
+  if (database_->work_) database_->work_->num_units = 0;
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
   sqlite3_reset(statement_.get());

@@ -54,6 +54,9 @@ class Database {
   Statement prepare(const std::string& sql);
   // The first column of the first row.
   std::int64_t number(const std::string& sql);
+  // From here on each step of a statement ends with an InputError if it takes more work than a file
+  // of this size can need: in a forged one a page has itself as a part any number of times.
+  void limit_work();
   // Every page belongs to one thing, and each says what it should. Reads all of the file.
   void check_pages();
   // All of it as the bytes of a file.
@@ -63,13 +66,20 @@ class Database {
   [[noreturn]] void fail(int code) const;
 
  private:
+  friend class Statement;
   struct Close {
     void operator()(sqlite3* connection) const;
+  };
+  // Of the step that runs; at a place of its own, which the connection knows.
+  struct Work {
+    std::int64_t num_units = 0;
+    std::int64_t max_units = 0;
   };
   void restrict_to_data();
 
   std::filesystem::path path_;
   OpenMode mode_;
+  std::unique_ptr<Work> work_;
   std::unique_ptr<sqlite3, Close> connection_;
 };
 
