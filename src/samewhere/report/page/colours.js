@@ -44,7 +44,7 @@
     accepted: { width: 4, dash: null, opacity: 1, mark: 'circle', word: 'accepted' },
     withdrawn: { width: 3, dash: [10, 4], opacity: 0.95, mark: 'triangle', word: 'withdrawn' },
     ambiguous: { width: 2, dash: [2, 4], opacity: 0.9, mark: 'diamond', word: 'ambiguous' },
-    rejected: { width: 1.3, dash: null, opacity: 0.55, mark: null, word: 'rejected' },
+    rejected: { width: 1, dash: null, opacity: 0.6, mark: null, word: 'rejected' },
   };
   samewhere.kindNames = ['accepted', 'withdrawn', 'ambiguous', 'rejected'];
 

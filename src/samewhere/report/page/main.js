@@ -22,6 +22,9 @@
     };
     preferred.addEventListener('change', (event) => apply(event.matches));
     apply(preferred.matches);
+    let isDarkOnScreen = false;
+    addEventListener('beforeprint', () => { isDarkOnScreen = samewhere.isDark(); apply(false); });
+    addEventListener('afterprint', () => apply(isDarkOnScreen));
     return () => apply(!samewhere.isDark());
   }
 
@@ -88,10 +91,11 @@
       document.body.classList.add('without-map');
       return null;
     }
-    const is3d = samewhere.hasWebGL();
-    const map = new (is3d ? samewhere.Scene : samewhere.Plan)(run, state, canvas);
+    const webGL = samewhere.probeWebGL();
+    const is3d = webGL !== null;
+    const map = is3d ? new samewhere.Scene(run, state, canvas, webGL) : new samewhere.Plan(run, state, canvas);
     const grid = is3d && !run.is_scale_unknown ? `Grid: ${samewhere.number(map.gridStep)} m. ` : '';
-    byId('scene-note').textContent = is3d ? `${grid}Drag to turn, wheel to zoom, right button to move. Click a line.` : 'This browser has no WebGL: the map is shown from above. Drag to move, wheel to zoom, click a line.';
+    byId('scene-note').textContent = is3d ? `${map.note || ''}${grid}Drag to turn, wheel to zoom, right button to move. Click a line.` : 'This browser has no WebGL: the map is shown from above. Drag to move, wheel to zoom, click a line.';
     byId('view-reset').addEventListener('click', () => map.look('whole'));
     byId('view-top').addEventListener('click', () => map.look('above'));
     byId('view-follow').addEventListener('click', () => {
@@ -148,7 +152,7 @@
     ]);
     if (run.num) state.set('row', run.num - 1);
     Object.assign(samewhere, { run, state, map, plots, timeline, candidates });
-    document.documentElement.dataset.ready = 'true';
+    document.documentElement.dataset.ready = Math.round(performance.now()); // ms since the page was opened
   }
   document.addEventListener('DOMContentLoaded', start);
 })();

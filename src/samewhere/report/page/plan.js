@@ -1,6 +1,7 @@
 // The map from above on a 2D canvas, where the browser has no WebGL. Same interface as Scene.
 (function () {
   const kMaxPoints = 60000;
+  const kMaxPieces = 600;
 
   class Plan {
     constructor(run, state, canvas) {
@@ -103,19 +104,24 @@
       this.pen.stroke();
       this.pen.setLineDash([]);
     }
+    // In at most kMaxPieces pieces, each of one colour.
     drawFrames() {
       const colouring = samewhere.pathColouring(this.run, this.state.get('colourBy'));
-      this.pen.lineWidth = 4;
-      this.pen.lineCap = 'round';
-      for (let row = 1; row < this.run.num; ++row) {
-        const a = this.run.position(row - 1);
-        const b = this.run.position(row);
-        if (!a || !b) continue;
-        this.pen.beginPath();
-        this.pen.moveTo(...this.onCanvas(a));
-        this.pen.lineTo(...this.onCanvas(b));
-        this.pen.strokeStyle = `rgb(${colouring.colour(row).map((value) => Math.round(255 * value)).join(' ')})`;
-        this.pen.stroke();
+      const { pen } = this;
+      pen.lineWidth = 4;
+      pen.lineCap = 'round';
+      const step = Math.ceil(this.run.num / kMaxPieces);
+      for (let begin = 0; begin < this.run.num - 1; begin += step) {
+        pen.beginPath();
+        let isOpen = false;
+        for (let row = begin; row <= Math.min(this.run.num - 1, begin + step); ++row) {
+          const at = this.run.position(row);
+          if (at && isOpen) pen.lineTo(...this.onCanvas(at));
+          if (at && !isOpen) pen.moveTo(...this.onCanvas(at));
+          isOpen = at !== null;
+        }
+        pen.strokeStyle = `rgb(${colouring.colour(begin).map((value) => Math.round(255 * value)).join(' ')})`;
+        pen.stroke();
       }
     }
     drawCandidates() {

@@ -138,6 +138,10 @@
         pen.stroke();
         pen.fillStyle = samewhere.css('ink');
         pen.textAlign = 'left';
+        pen.setLineDash([]);
+        pen.lineWidth = 4;
+        pen.strokeStyle = samewhere.css('card');
+        pen.strokeText(`threshold ${number(plot.limit)}`, left + 3, y - 4);
         pen.fillText(`threshold ${number(plot.limit)}`, left + 3, y - 4);
         pen.restore();
       } };

@@ -2,11 +2,13 @@
 (function () {
   const element = samewhere.element;
   const kClickPixels = 10; // a click so near to a line is meant for it
+  const kMaxSlowPoints = 60000; // landmarks drawn where there is no graphics card
 
   function sprite(mark, colour, ground) {
     const canvas = element('canvas', { width: 64, height: 64 });
     const pen = canvas.getContext('2d');
     pen.beginPath();
+    if (mark === 'dot') pen.arc(32, 32, 26, 0, 7);
     if (mark === 'circle') pen.arc(32, 32, 20, 0, 7);
     if (mark === 'diamond') { pen.moveTo(32, 6); pen.lineTo(56, 32); pen.lineTo(32, 58); pen.lineTo(8, 32); }
     if (mark === 'triangle') { pen.moveTo(32, 8); pen.lineTo(58, 54); pen.lineTo(6, 54); }
@@ -23,12 +25,7 @@
   function wideLines(positions, options) {
     const geometry = new THREE.LineSegmentsGeometry();
     geometry.setPositions(positions);
-    if (options.colours) geometry.setColors(options.colours);
-    const material = new THREE.LineMaterial({
-      color: options.colours ? 0xffffff : options.colour, linewidth: options.width,
-      vertexColors: options.colours ? THREE.VertexColors : THREE.NoColors,
-      dashed: Boolean(options.dash), depthTest: options.depthTest !== false,
-    });
+    const material = new THREE.LineMaterial({ color: options.colour, linewidth: options.width, dashed: Boolean(options.dash), depthTest: options.depthTest !== false });
     if (options.dash) {
       material.defines.USE_DASH = '';
       [material.dashSize, material.gapSize] = options.dash;
@@ -42,24 +39,39 @@
     return lines;
   }
 
-  // Segments of a path; broken where a position is missing or `isBreak(row)`.
-  function segments(positions, num, isBreak = () => false) {
+  // Rows of a path that continue the row before: both have a position, and no `isBreak(row)`.
+  function continuedRows(positions, num, isBreak = () => false) {
     const rows = [];
     for (let row = 1; row < num; ++row) {
-      if (Number.isNaN(positions[3 * row]) || Number.isNaN(positions[3 * row - 3]) || isBreak(row)) continue;
-      rows.push(row);
+      if (!Number.isNaN(positions[3 * row]) && !Number.isNaN(positions[3 * row - 3]) && !isBreak(row)) rows.push(row);
     }
+    return rows;
+  }
+  function segments(positions, rows) {
     const values = new Float32Array(6 * rows.length);
     rows.forEach((row, i) => values.set(positions.subarray(3 * row - 3, 3 * row + 3), 6 * i));
-    return { rows, values };
+    return values;
+  }
+
+  // Lines of one pixel, which any machine draws fast.
+  function thinLines(values, options) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(values), 3));
+    const common = { color: options.colour, transparent: true, opacity: options.opacity || 1, depthWrite: false };
+    const material = options.dash ? new THREE.LineDashedMaterial({ ...common, dashSize: options.dash[0], gapSize: options.dash[1] }) : new THREE.LineBasicMaterial(common);
+    const lines = new THREE.LineSegments(geometry, material);
+    if (options.dash) lines.computeLineDistances();
+    lines.renderOrder = options.order || 2;
+    return lines;
   }
 
   class Scene {
-    constructor(run, state, canvas) {
+    constructor(run, state, canvas, { isSlow }) {
       this.run = run;
       this.state = state;
       this.canvas = canvas;
-      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+      this.isSlow = isSlow;
+      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSlow, preserveDrawingBuffer: true });
       this.renderer.localClippingEnabled = true;
       this.scene = new THREE.Scene();
       this.camera = new THREE.PerspectiveCamera(42, 1, 0.05, 5000);
@@ -133,6 +145,11 @@
     buildPoints() {
       const { positions, colours } = this.run.points;
       const geometry = new THREE.BufferGeometry();
+      if (this.isSlow && positions.length > 3 * kMaxSlowPoints) {
+        const step = Math.ceil(positions.length / 3 / kMaxSlowPoints);
+        geometry.setIndex(Array.from({ length: Math.floor(positions.length / 3 / step) }, (_, i) => i * step));
+        this.note = `Drawn without a graphics card: 1 of ${step} landmarks. `;
+      }
       geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3, true));
       const shade = Number(samewhere.css('point-shade')) || 1;
@@ -155,27 +172,38 @@
       this.replace('ground', grid);
     }
 
+    // The path as dots so near to each other that they are a line.
     buildPath() {
-      const { run } = this;
-      const colouring = samewhere.pathColouring(run, this.state.get('colourBy'));
-      const { rows, values } = segments(run.positions, run.num);
-      const colours = new Float32Array(6 * rows.length);
-      rows.forEach((row, i) => {
-        colours.set(colouring.colour(row - 1), 6 * i);
-        colours.set(colouring.colour(row), 6 * i + 3);
-      });
-      this.replace('path', rows.length ? wideLines(values, { colours, width: 4.5, order: 3 }) : null);
-      this.size(this.path);
+      const { positions } = this.run;
+      const colouring = samewhere.pathColouring(this.run, this.state.get('colourBy'));
+      const spacing = this.radius / 250;
+      const dots = [];
+      const colours = [];
+      for (const row of continuedRows(positions, this.run.num)) {
+        const a = this.run.position(row - 1);
+        const b = this.run.position(row);
+        const num = Math.min(20, Math.ceil(Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / spacing));
+        for (let i = 0; i < num; ++i) {
+          dots.push(...[0, 1, 2].map((k) => a[k] + ((b[k] - a[k]) * i) / num));
+          colours.push(...colouring.colour(i * 2 < num ? row - 1 : row));
+        }
+      }
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(dots), 3));
+      geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(colours), 3));
+      const material = new THREE.PointsMaterial({ size: 5 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: THREE.VertexColors, map: sprite('dot', '#ffffff', '#ffffff'), alphaTest: 0.5 });
+      const path = dots.length ? new THREE.Points(geometry, material) : null;
+      if (path) path.renderOrder = 3;
+      this.replace('path', path);
       this.render();
     }
 
     buildOtherPaths() {
       for (const name of ['odometry', 'truth']) {
         const path = this.run[name];
-        const { rows, values } = segments(path.positions, path.times.length, (row) => path.times[row] - path.times[row - 1] > 1);
+        const rows = continuedRows(path.positions, path.times.length, (row) => path.times[row] - path.times[row - 1] > 1);
         const dash = name === 'truth' ? [this.radius / 60, this.radius / 90] : null;
-        this.replace(name, rows.length ? wideLines(values, { colour: new THREE.Color(samewhere.css(name)), width: 2, dash, order: 2 }) : null);
-        this.size(this[name]);
+        this.replace(name, rows.length ? thinLines(segments(path.positions, rows), { colour: samewhere.css(name), dash }) : null);
       }
     }
 
@@ -192,8 +220,7 @@
           }
         });
       }
-      this.replace('ellipses', values.length ? wideLines(values, { colour: new THREE.Color(samewhere.css('ellipse')), width: 1.2, opacity: 0.7, order: 2 }) : null);
-      this.size(this.ellipses);
+      this.replace('ellipses', values.length ? thinLines(values, { colour: samewhere.css('ellipse'), opacity: 0.7 }) : null);
     }
 
     showCandidates(candidates) {
@@ -213,7 +240,8 @@
     drawLines(name, candidates, kind, style) {
       const values = candidates.flatMap(({ ends }) => [...ends[0], ...ends[1]]);
       const dash = style.dash && style.dash.map((pixels) => (pixels * this.radius) / 400);
-      this.replace(name, values.length ? wideLines(values, { ...style, colour: new THREE.Color(samewhere.css(kind)), dash, depthTest: kind !== 'accepted', order: 4 }) : null);
+      const options = { ...style, colour: new THREE.Color(samewhere.css(kind)), dash, depthTest: kind !== 'accepted', order: 4 };
+      this.replace(name, values.length ? (kind === 'rejected' ? thinLines : wideLines)(values, options) : null);
       this.size(this[name]);
     }
 
@@ -356,7 +384,7 @@
     }
 
     size(lines) {
-      if (lines) lines.material.resolution.set(this.canvas.clientWidth || 1, this.canvas.clientHeight || 1);
+      if (lines && lines.material.resolution) lines.material.resolution.set(this.canvas.clientWidth || 1, this.canvas.clientHeight || 1);
     }
 
     resize() {
@@ -453,13 +481,13 @@
     return { values: [a[0][0], a[1][1], a[2][2]], vectors: v };
   };
 
-  samewhere.hasWebGL = function () {
-    try {
-      const canvas = document.createElement('canvas');
-      return Boolean(canvas.getContext('webgl2') || canvas.getContext('webgl'));
-    } catch (error) {
-      return false;
-    }
+  // null: there is no WebGL. Else whether the processor draws, which takes long.
+  samewhere.probeWebGL = function () {
+    const context = document.createElement('canvas').getContext('webgl');
+    if (!context) return null;
+    const names = context.getExtension('WEBGL_debug_renderer_info');
+    const renderer = names ? context.getParameter(names.UNMASKED_RENDERER_WEBGL) : '';
+    return { isSlow: /swiftshader|llvmpipe|softpipe|software/i.test(renderer) };
   };
   samewhere.Scene = Scene;
 })();
