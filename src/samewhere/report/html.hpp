@@ -6,10 +6,14 @@
 
 namespace samewhere::report {
 
-// report.html: one self-contained page, in light and dark, for phones too. It shows the metrics,
-// the trajectory, the tracking status of each frame, the verification funnel, accepted and rejected
-// candidates with thumbnails, and the configuration. Parts without data are left out. The same
-// record gives the same bytes: durations are not on it.
+// report.html: one self-contained page that needs no network, in light and dark, for phones and
+// paper too. Landmarks, trajectory and loop candidates in 3D, plots over time, the pictures of
+// candidates with their feature matches, every score beside its threshold, the verification funnel,
+// metrics and the configuration. The same record gives the same bytes. Durations are in the last
+// line alone, so that two runs of the same input differ in nothing else (without_durations).
 std::string report_html(const RunRecord& record);
+
+// The page up to its last block, which holds the durations.
+std::string without_durations(const std::string& report_html);
 
 }  // namespace samewhere::report

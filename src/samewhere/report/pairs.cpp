@@ -6,48 +6,10 @@
 #include <fmt/format.h>
 
 #include <samewhere/report/funnel.hpp>
-#include <samewhere/report/html_text.hpp>
-#include <samewhere/report/jpeg.hpp>
-#include <samewhere/report/loops.hpp>
 #include <samewhere/report/pairs.hpp>
 
 namespace samewhere::report {
 namespace {
-
-std::string name_of_frame(const RunRecord& record, core::FrameId frame) {
-  const auto index = static_cast<std::size_t>(frame.index());
-  if (index < record.frames.size() && record.frames[index].pose.frame == frame)
-    return record.frames[index].name;
-  return "";
-}
-
-// `called`: the frame as it is printed.
-std::string view(const RunRecord& record, core::FrameId frame, const std::string& called) {
-  std::string image;
-  const auto thumbnail = record.thumbnails.find(frame);
-  if (thumbnail != record.thumbnails.end())
-    image = fmt::format("<img src=\"{}\" alt=\"frame {}\" loading=\"lazy\">",
-                        jpeg_data_uri(thumbnail->second), called);
-  return fmt::format("<div class=\"view{}\" title=\"{}\">{}<span>{}</span></div>",
-                     image.empty() ? " missing" : "", escaped(name_of_frame(record, frame)), image,
-                     called);
-}
-
-std::string verdict_label(const core::Verdict& verdict) {
-  const char* shade = core::is_loop(verdict)                             ? "yes"
-                      : std::holds_alternative<core::Ambiguous>(verdict) ? "maybe"
-                                                                         : "no";
-  return fmt::format("<span class=\"verdict {}\">{}</span>", shade, verdict_in_words(verdict));
-}
-
-std::string card(const RunRecord& record, const core::LedgerRow& row) {
-  return fmt::format(
-      "<figure class=\"pair\"><div class=\"views\">{}{}</div><figcaption><div class=\"what\">{}"
-      "<span class=\"scores\">{}</span></div><p>{}</p></figcaption></figure>\n",
-      view(record, row.candidate.query, std::to_string(row.candidate.query.index())),
-      view(record, row.candidate.match, name_of_match(row.candidate)), verdict_label(row.verdict),
-      scores_of(core::evidence_of(row.verdict)), escaped(core::reason_of(row.verdict)));
-}
 
 // Inliers, then similarity (the least where it is no number, so that the order stays one).
 std::pair<int, double> strength_of(const core::LedgerRow& row) {
@@ -88,18 +50,6 @@ std::vector<const core::LedgerRow*> rejected_rows(const core::Ledger& ledger) {
                      return strength_of(*a) > strength_of(*b);
                    });
   return rows;
-}
-
-std::string pair_cards(const RunRecord& record, const std::vector<const core::LedgerRow*>& rows,
-                       std::size_t max_pairs) {
-  const std::size_t num_shown = std::min(rows.size(), max_pairs);
-  std::string html = "<div class=\"pairs\">\n";
-  for (std::size_t i = 0; i < num_shown; ++i) html += card(record, *rows[i]);
-  html += "</div>\n";
-  if (num_shown < rows.size())
-    fmt::format_to(std::back_inserter(html), "<p class=\"note\">{} more in loops.json.</p>\n",
-                   rows.size() - num_shown);
-  return html;
 }
 
 }  // namespace samewhere::report

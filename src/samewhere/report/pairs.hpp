@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <samewhere/report/record.hpp>
+#include <samewhere/core/ledger.hpp>
 
 namespace samewhere::report {
 
@@ -16,10 +16,5 @@ std::vector<const core::LedgerRow*> rejected_rows(const core::Ledger& ledger);
 // One line each: the verdict ("rejected: odometry"), and what was measured.
 std::string verdict_in_words(const core::Verdict& verdict);
 std::string scores_of(const core::Evidence& evidence);
-
-// HTML: for each of the first max_pairs rows the two thumbnails side by side with frame numbers,
-// verdict, scores and reason; then how many more there are.
-std::string pair_cards(const RunRecord& record, const std::vector<const core::LedgerRow*>& rows,
-                       std::size_t max_pairs);
 
 }  // namespace samewhere::report

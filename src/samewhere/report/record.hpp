@@ -37,6 +37,28 @@ struct Figure {
   std::vector<double> numbers = {};  // unrounded, in the order of the text (figure.hpp)
 };
 
+// A feature match of a candidate, as shares of the width and height of either image.
+struct ImageMatch {
+  Eigen::Vector2f in_query = Eigen::Vector2f::Zero();
+  Eigen::Vector2f in_match = Eigen::Vector2f::Zero();
+  bool is_inlier = false;  // the candidate's relative pose explains it
+};
+
+// How uncertain the position of a keyframe is, relative to the first one of the run.
+struct PositionCovariance {
+  core::FrameId frame;
+  Eigen::Matrix3d in_world_m2 = Eigen::Matrix3d::Zero();
+};
+
+// The threshold of a score of loops.json.
+struct ScoreLimit {
+  std::string score;        // "num_inliers"
+  std::string setting;      // "verify.min_inliers"
+  bool is_minimum = false;  // else the largest that passes
+  double value = 0.0;
+  std::string share_of = {};  // of which other score it is a share; empty: of none
+};
+
 // A finished run, as plain data.
 struct RunRecord {
   std::string title;
@@ -46,7 +68,11 @@ struct RunRecord {
   core::Trajectory odometry;          // before any correction; may be empty
   core::Trajectory truth;             // aligned into the world of the estimate; may be empty
   std::vector<ColouredPoint> points;  // of the map
-  std::map<core::FrameId, std::string> thumbnails;  // JPEG (jpeg.hpp), of the frames in the ledger
+  std::map<core::FrameId, std::string> thumbnails;  // JPEG (jpeg.hpp), of keyframes; in recognition
+                                                    // alone, of the frames in the ledger
+  std::map<core::CandidateId, std::vector<ImageMatch>> matches;  // of some candidates
+  std::vector<ScoreLimit> limits;                                // in the order of the checks
+  std::vector<PositionCovariance> covariances;  // of some keyframes; empty if the scale is unknown
   std::vector<Figure> figures;
   core::Timings timings;  // stage kWholeFrameStage gives the frames per second
   // CPU time of the whole program after the last frame; nothing for live sources and where several

@@ -17,9 +17,11 @@
 #include <samewhere/report/figure.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
+#include <samewhere/run/candidate_matches.hpp>
 #include <samewhere/run/map_export.hpp>
 #include <samewhere/run/mapped_slam.hpp>
 #include <samewhere/run/open_source.hpp>
+#include <samewhere/run/position_covariances.hpp>
 #include <samewhere/run/prior.hpp>
 #include <samewhere/run/recognition.hpp>
 #include <samewhere/run/run.hpp>
@@ -31,6 +33,11 @@ namespace {
 
 // Lengths, in edges, over which the drift model is held against the truth.
 constexpr int kChains[] = {1, 10};
+
+// Candidates whose matches the report shows.
+constexpr std::size_t kMaxMatchedCandidates = 250;
+// Keyframes whose covariance the report shows.
+constexpr std::size_t kMaxCovariances = 150;
 
 RunOutcome start_outcome(const pipeline::Config& config, const core::SourceInfo& info) {
   RunOutcome outcome;
@@ -156,7 +163,16 @@ void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& nam
   record.odometry = pipeline::odometry_of(slam.map(), slam.frames());
   record.timings.add(slam.timings());
   record.timings.add_processor(report::kWholeFrameStage, slam.processor_ms_beside());
-  drop_unused_thumbnails(record);
+}
+
+// What the report shows beside the results.
+void record_for_page(const MappedSlam& mapped, const pipeline::Config& config,
+                     report::RunRecord& record) {
+  const pipeline::Slam& slam = mapped.slam();
+  record.matches = candidate_matches(record.ledger, slam.map(), config, kMaxMatchedCandidates);
+  record.limits = score_limits(config.verify);
+  if (mapped.is_metric())
+    record.covariances = position_covariances(slam.map(), slam.session(), config, kMaxCovariances);
 }
 
 // "frames 839 to 853: scale 1/8.1 of the usual", of at most three; the numbers are of all.
@@ -288,6 +304,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   report::RunRecord& record = outcome.record;
   record.thumbnails = mapped.take_thumbnails();
   record_slam(slam, names, record);
+  record_for_page(mapped, config, record);
   if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
   record_figures(mapped, config, plan, truth, record);
   if (odometry) report_coverage(*odometry, record);
@@ -313,6 +330,7 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const pipel
   run(next, recognition.steps());
   std::move(recognition).report_to(outcome);
   report::RunRecord& record = outcome.record;
+  record.limits = score_limits(config.verify);
   feed.report();
   drop_unused_thumbnails(record);
   const RecognitionFindings findings{static_cast<int>(report::final_rows(record.ledger).size()),

@@ -1,0 +1,40 @@
+# Run by `cmake -P`: puts the files of a page into one HTML template, and that into a C++ file that can be compiled.
+#
+#   PAGE       the page: a line `<!-- include NAME -->` stands for the content of the file NAME
+#   FILES      the files that may be included, separated by |
+#   TEMPLATE   HTML file to write, to look at
+#   SOURCE     C++ file to write: defines samewhere::report::page_template()
+string(REPLACE "|" ";" FILES "${FILES}")
+file(READ ${PAGE} page)
+foreach(path IN LISTS FILES)
+  get_filename_component(name ${path} NAME)
+  file(READ ${path} content)
+  string(FIND "${page}" "<!-- include ${name} -->" at)
+  if(at LESS 0)
+    message(FATAL_ERROR "${PAGE}: does not include ${name}")
+  endif()
+  string(REPLACE "<!-- include ${name} -->" "${content}" page "${page}")
+endforeach()
+if(page MATCHES "<!-- include ([^ ]+) -->")
+  message(FATAL_ERROR "${PAGE}: includes ${CMAKE_MATCH_1}, which is missing")
+endif()
+file(WRITE ${TEMPLATE} "${page}")
+
+# a string literal has a limit; neighbouring ones are one
+set(literals "")
+string(LENGTH "${page}" num_bytes)
+set(at 0)
+while(at LESS num_bytes)
+  string(SUBSTRING "${page}" ${at} 16000 part)
+  string(APPEND literals "R\"samewhere(${part})samewhere\"\n")
+  math(EXPR at "${at} + 16000")
+endwhile()
+file(WRITE ${SOURCE} "#include <samewhere/report/page_template.hpp>\n
+namespace samewhere::report {
+std::string_view page_template() {
+  static constexpr char kPage[] =
+${literals};
+  return {kPage, sizeof(kPage) - 1};
+}
+}  // namespace samewhere::report
+")
