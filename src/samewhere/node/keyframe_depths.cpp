@@ -16,8 +16,8 @@ constexpr std::size_t kMaxFrames = 30;
 
 }  // namespace
 
-KeyframeDepths::KeyframeDepths(const dense::Config& config, core::Camera camera)
-    : config_(config), camera_(std::move(camera)), reader_(config) {}
+KeyframeDepths::KeyframeDepths(const dense::Config& config, const core::Camera& camera)
+    : config_(config), camera_(camera), reader_(config) {}
 
 void KeyframeDepths::take_frame(double stamp_s, cv::Mat depth_m) {
   if (!std::holds_alternative<core::PinholeRadtan>(camera_)) return;

@@ -30,7 +30,7 @@ using SharedDepths = std::vector<std::shared_ptr<const KeyframeDepth>>;
 // above, every other keyframe is left out.
 class KeyframeDepths {
  public:
-  KeyframeDepths(const dense::Config& config, core::Camera camera);
+  KeyframeDepths(const dense::Config& config, const core::Camera& camera);
 
   // The depth image of a frame; 32-bit float, metres, 0: unknown. The last second of them is kept.
   void take_frame(double stamp_s, cv::Mat depth_m);
