@@ -5,7 +5,7 @@
 
   const inliersOf = (candidate) => candidate.scores.num_inliers || 0;
   const orders = {
-    'most inliers first': (a, b) => inliersOf(b) - inliersOf(a) || a.id - b.id,
+    'most inliers first': (a, b) => inliersOf(b) - inliersOf(a) || (b.scores.num_matches || 0) - (a.scores.num_matches || 0) || a.id - b.id,
     'in order of time': (a, b) => a.query - b.query || a.id - b.id,
     'most similar first': (a, b) => (b.scores.similarity || 0) - (a.scores.similarity || 0) || a.id - b.id,
   };
