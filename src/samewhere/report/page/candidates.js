@@ -87,7 +87,7 @@
 
     tellCount() {
       const { length } = this.run.candidates;
-      const noLine = this.found.filter((candidate) => !candidate.hasLine).length;
+      const noLine = this.run.num ? this.found.filter((candidate) => !candidate.hasLine).length : 0;
       byId('count').textContent = `${number(this.found.length)} of ${number(length)} candidates${noLine ? `, ${number(noLine)} of them without a line: a view has no pose` : ''}`;
       byId('count').dataset.count = this.found.length;
     }
