@@ -33,10 +33,10 @@ class CandidateMatches : public pipeline::LookAlikeRooms {
 };
 
 TEST_F(CandidateMatches, FitTheTruePoseAndNotAnother) {
-  scene::LoopEdge moved = true_loop(13, 1);
+  scene::LoopEdge moved = true_loop(11, 10);
   moved.match_from_query.translation.x() += 0.5;
-  const core::Ledger ledger = {rejected(true_loop(13, 1), 0, true), rejected(moved, 1, true),
-                               rejected(true_loop(13, 1), 2, false)};
+  const core::Ledger ledger = {rejected(true_loop(11, 10), 0, true), rejected(moved, 1, true),
+                               rejected(true_loop(11, 10), 2, false)};
   const auto matches = candidate_matches(ledger, map_, config_, 10);
   ASSERT_EQ(matches.size(), 3U);
   const auto& of_true = matches.at(core::CandidateId(0));
@@ -51,10 +51,10 @@ TEST_F(CandidateMatches, FitTheTruePoseAndNotAnother) {
 }
 
 TEST_F(CandidateMatches, AreLimitedAndOfKeyframesOnly) {
-  core::LedgerRow of_no_keyframe = rejected(true_loop(13, 1), 0, true);
+  core::LedgerRow of_no_keyframe = rejected(true_loop(11, 10), 0, true);
   of_no_keyframe.candidate.match = core::FrameId(999);
-  const core::Ledger ledger = {of_no_keyframe, rejected(true_loop(13, 1), 1, true),
-                               rejected(true_loop(13, 2), 2, true)};
+  const core::Ledger ledger = {of_no_keyframe, rejected(true_loop(11, 10), 1, true),
+                               rejected(true_loop(11, 9), 2, true)};
   const auto matches = candidate_matches(ledger, map_, config_, 1);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_TRUE(matches.contains(core::CandidateId(1)));

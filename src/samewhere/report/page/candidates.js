@@ -5,7 +5,7 @@
 
   const inliersOf = (candidate) => candidate.scores.num_inliers || 0;
   const orders = {
-    'most inliers first': (a, b) => inliersOf(b) - inliersOf(a) || a.id - b.id,
+    'most inliers first': (a, b) => inliersOf(b) - inliersOf(a) || (b.scores.num_matches || 0) - (a.scores.num_matches || 0) || a.id - b.id,
     'in order of time': (a, b) => a.query - b.query || a.id - b.id,
     'most similar first': (a, b) => (b.scores.similarity || 0) - (a.scores.similarity || 0) || a.id - b.id,
   };
@@ -87,7 +87,7 @@
 
     tellCount() {
       const { length } = this.run.candidates;
-      const noLine = this.found.filter((candidate) => !candidate.hasLine).length;
+      const noLine = this.run.num ? this.found.filter((candidate) => !candidate.hasLine).length : 0;
       byId('count').textContent = `${number(this.found.length)} of ${number(length)} candidates${noLine ? `, ${number(noLine)} of them without a line: a view has no pose` : ''}`;
       byId('count').dataset.count = this.found.length;
     }

@@ -108,7 +108,7 @@
         layout: { padding: { top: 2, right: 6 } },
         scales: {
           x: { type: 'linear', min: this.span[0], max: this.span[1], ticks: { maxTicksLimit: 6, maxRotation: 0, includeBounds: false, callback: (value) => `${number(value)} s` }, grid: { display: false } },
-          y: { beginAtZero: true, ticks: { maxTicksLimit: 5 }, afterFit: (scale) => { scale.width = 38; } },
+          y: { beginAtZero: true, suggestedMax: plot.limit === null ? undefined : 1.5 * plot.limit, ticks: { maxTicksLimit: 5 }, afterFit: (scale) => { scale.width = 38; } },
         },
         plugins: {
           legend: { display: numSets > 1, position: 'top', align: 'end', labels: { boxWidth: 18, boxHeight: 1, padding: 6, usePointStyle: plot.name === 'candidates' } },

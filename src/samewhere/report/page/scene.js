@@ -104,18 +104,19 @@
       this.pickOnClick();
     }
 
+    // Centre and radius of what is looked at: the path, and most landmarks near it.
     measureRoom() {
-      const bounds = this.run.bounds();
-      this.centre = new THREE.Vector3(...bounds.map(([low, high]) => (low + high) / 2));
+      const ofPath = this.run.bounds();
+      const pathLength = Math.hypot(...ofPath.map(([low, high]) => high - low));
       const { positions } = this.run.points;
-      const distances = [];
-      for (let i = 0; i < positions.length; i += 3) {
-        distances.push(Math.hypot(positions[i] - this.centre.x, positions[i + 1] - this.centre.y, positions[i + 2] - this.centre.z));
-      }
-      distances.sort((a, b) => a - b);
-      const ofPath = Math.hypot(...bounds.map(([low, high]) => (high - low) / 2));
-      const ofPoints = distances.length ? distances[Math.floor(0.97 * (distances.length - 1))] : 0;
-      this.radius = Math.max(ofPath, Math.min(ofPoints, 3 * ofPath + 2), 0.5);
+      const bounds = ofPath.map(([low, high], axis) => {
+        const values = positions.filter((_, i) => i % 3 === axis).sort();
+        if (!values.length) return [low, high];
+        const at = (share) => values[Math.floor(share * (values.length - 1))];
+        return [Math.min(low, Math.max(at(0.04), low - 2 * pathLength)), Math.max(high, Math.min(at(0.96), high + 2 * pathLength))];
+      });
+      this.centre = new THREE.Vector3(...bounds.map(([low, high]) => (low + high) / 2));
+      this.radius = Math.max(0.5, Math.hypot(...bounds.map(([low, high]) => (high - low) / 2)));
       this.frustumLength = Math.min(0.9, Math.max(0.12, this.radius / 16));
     }
 
@@ -351,7 +352,7 @@
         return distances.length ? distances[Math.floor(share * (distances.length - 1))] : 0;
       };
       const ofPath = need(this.run.positions, 1);
-      return 1.06 * Math.max(ofPath, Math.min(need(this.run.points.positions, 0.96), 2.5 * ofPath), 0.5);
+      return 1.1 * Math.max(ofPath, Math.min(need(this.run.points.positions, 0.96), 2.5 * ofPath), 0.5);
     }
 
     moveTarget(target) {

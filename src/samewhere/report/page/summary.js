@@ -21,7 +21,7 @@
   const headline = ['ATE RMSE (median, max)', 'ATE RMSE before loop closing', 'loops accepted: true / false / unknown', 'revisits closed', 'path length', 'frames with a measured pose'];
   function showHeadline(run) {
     const found = headline.map((name) => run.figures.find((figure) => figure.name === name)).filter(Boolean);
-    const shown = (found.length ? found : run.figures).slice(0, 4);
+    const shown = (found.length ? found : run.figures.filter((figure) => figure.value.length < 20)).slice(0, 4);
     for (const figure of shown) {
       const value = figure.value.replace(/ \(.*\)$/, '');
       byId('headline').append(element('div', { title: `${figure.name}: ${figure.value}` }, element('dt', {}, figure.name.replace(' (median, max)', '')), element('dd', {}, value)));
