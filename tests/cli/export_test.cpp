@@ -83,8 +83,8 @@ void Export::expect_files() const {
   ASSERT_EQ(messages.exit_code, 0) << messages.err;
   const Outcome info = run_program("info " + quoted(path("run/export.mcap")), folder_.root());
   EXPECT_EQ(info.exit_code, 0) << info.err;
-  for (const char* topic : {"/tf_static", "/pose", "/path", "/map", "/map_points", "/diagnostics",
-                            "/camera/image/compressed", "/camera/camera_info"})
+  for (const char* topic : {"/tf_static", "/pose", "/path", "nav_msgs/OccupancyGrid", "/map_points",
+                            "/diagnostics", "/camera/image/compressed", "/camera/camera_info"})
     EXPECT_THAT(info.out, HasSubstr(topic));
   ASSERT_EQ(exported("las").exit_code, 0);
   EXPECT_EQ(core::read_file(path("run/export.las")), core::read_file(path("as.las")));

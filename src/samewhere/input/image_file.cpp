@@ -248,7 +248,7 @@ cv::Mat metres_from_floats(cv::Mat depth_m) {
   for (int y = 0; y < depth_m.rows; ++y) {
     for (int x = 0; x < depth_m.cols; ++x) {
       float& value_m = depth_m.at<float>(y, x);
-      if (!std::isfinite(value_m) || value_m < 0.0F) value_m = 0.0F;
+      if (!std::isfinite(value_m) || value_m <= 0.0F) value_m = 0.0F;  // -0, too
     }
   }
   return depth_m;

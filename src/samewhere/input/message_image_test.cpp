@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -310,6 +311,15 @@ TEST(MessageCamera, OfACroppedAndBinnedPictureHasItsPixels) {
   EXPECT_EQ(camera.height_px, 200);
   EXPECT_EQ(camera.fx_px, 250.0);
   EXPECT_EQ(camera.cx_px, (319.5 - 40.0 - 0.5) / 2.0);
+}
+
+TEST(MessageImage, DepthOfMinusZeroIsUnknown) {
+  messages::Image message{.height = 1, .width = 2, .encoding = "32FC1", .step = 8};
+  message.data = {0, 0, 0, 0x80, 0, 0, 0x80, 0x3f};  // -0, 1
+  const cv::Mat depth_m = depth_of(message, "depth", 1000.0);
+  EXPECT_FALSE(std::signbit(depth_m.at<float>(0, 0)));
+  EXPECT_EQ(depth_m.at<float>(0, 0), 0.0F);
+  EXPECT_EQ(depth_m.at<float>(0, 1), 1.0F);
 }
 
 }  // namespace

@@ -48,14 +48,9 @@ TEST(KeyframeDepths, MemoryIsBounded) {
 // A rendered walk through corridors: the floor that the camera walked over is free, walls are
 // there.
 TEST(Node, GivesAnOccupancyGridOfDepth) {
-  const MessageWalk walk;
   TestPublisher publisher;
   Node node(test_node_config(), test_node_options(), publisher);
-  node.take(walk.info());
-  for (std::size_t i = 0; i < walk.size(); ++i) {
-    node.take(walk.image(i));
-    node.take(walk.depth(i));
-  }
+  play(node, MessageWalk());
   node.finish();
   ASSERT_FALSE(publisher.of_grids.empty());
   const messages::OccupancyGrid& grid = publisher.of_grids.back();
@@ -70,16 +65,11 @@ TEST(Node, GivesAnOccupancyGridOfDepth) {
 }
 
 TEST(Node, GivesNoGridIfNoneIsWanted) {
-  const MessageWalk walk;
   TestPublisher publisher;
   Config config = test_node_config();
   config.grid_period_s = 0.0;
   Node node(config, test_node_options(), publisher);
-  node.take(walk.info());
-  for (std::size_t i = 0; i < walk.size(); ++i) {
-    node.take(walk.image(i));
-    node.take(walk.depth(i));
-  }
+  play(node, MessageWalk());
   node.finish();
   EXPECT_TRUE(publisher.of_grids.empty());
 }

@@ -16,14 +16,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-void play(Node& node, const MessageWalk& walk) {
-  node.take(walk.info());
-  for (std::size_t i = 0; i < walk.size(); ++i) {
-    node.take(walk.image(i));
-    node.take(walk.depth(i));
-  }
-}
-
 // What Slam gives for the same frames.
 std::vector<Tracked> tracked_alone(const Pose& body_from_camera) {
   const library::TestWalk& walk = library::test_walk();

@@ -75,6 +75,15 @@ struct MessageWalk {
   std::size_t size() const { return walk.frames.size(); }
 };
 
+// All messages of a walk with depth, in order.
+inline void play(Node& node, const MessageWalk& walk) {
+  node.take(walk.info());
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    node.take(walk.image(i));
+    node.take(walk.depth(i));
+  }
+}
+
 inline Config test_node_config() {
   return {.cameras = Cameras::kDepth,
           .frame_rate_hz = library::test_walk().calibration.frame_rate_hz,
