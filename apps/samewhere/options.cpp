@@ -11,8 +11,8 @@ namespace samewhere::app {
 void add_config_options(CLI::App& command, ConfigOptions& options) {
   command
       .add_option("--profile", options.profile,
-                  "built-in settings: default, recognition (of `samewhere loops`), or paper (the "
-                  "published method)")
+                  "built-in settings: default, recognition (of `samewhere loops`), paper (the "
+                  "published method), or usual (bag of words and geometry alone, to compare with)")
       ->capture_default_str();
   command.add_option("--config", options.file, "YAML file with settings that override the profile");
   command

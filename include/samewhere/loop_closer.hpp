@@ -25,7 +25,7 @@ enum class OdometrySensor {
 /// How a LoopCloser works.
 struct LoopCloserOptions {
   OdometrySensor sensor = OdometrySensor::kWheel;  ///< the drift model
-  std::string profile = "default";                 ///< "default", "recognition" or "paper"
+  std::string profile = "default";                 ///< "default", "recognition", "paper" or "usual"
   std::vector<std::string>
       settings;                ///< "section.key=value"; section `odometry` has the drift model
   std::optional<Prior> prior;  ///< verify.prior; empty: as in the profile and the settings

@@ -23,7 +23,7 @@ enum class MapUse {
 
 /// How a session works.
 struct Options {
-  std::string profile = "default";    ///< "default", "recognition" or "paper"
+  std::string profile = "default";    ///< "default", "recognition", "paper" or "usual"
   std::vector<std::string> settings;  ///< "section.key=value", docs/config.md
   std::optional<Prior> prior;         ///< verify.prior; empty: as in the profile and the settings
   /// Mapping, loop closing and full bundle adjustment in a thread each; the results are identical.

@@ -34,6 +34,17 @@ constexpr RenamedKey kRenamedKeys[] = {
     {"verify.wait_views", "verify.max_pending_views"},
 };
 
+struct BuiltInProfile {
+  std::string_view name;
+  const char* yaml;
+};
+
+constexpr BuiltInProfile kBuiltInProfiles[] = {
+    {"recognition", kRecognitionProfile},
+    {"paper", kPaperProfile},
+    {"usual", kUsualProfile},
+};
+
 }  // namespace
 
 void visit_renamed_keys(core::FieldVisitor& visit) {
@@ -46,17 +57,18 @@ features::Config features_of_lost(const Config& config, bool is_without_depth) {
   return features;
 }
 
-std::vector<std::string> profile_names() { return {"default", "recognition", "paper"}; }
+std::vector<std::string> profile_names() {
+  std::vector<std::string> names = {"default"};
+  for (const BuiltInProfile& built_in : kBuiltInProfiles) names.emplace_back(built_in.name);
+  return names;
+}
 
 Config profile(const std::string& name) {
   Config config;
   if (name == "default") return config;
-  if (name == "paper") {
-    core::read_config(config, kPaperProfile, "configs/paper.yaml");
-    return config;
-  }
-  if (name == "recognition") {
-    core::read_config(config, kRecognitionProfile, "configs/recognition.yaml");
+  for (const BuiltInProfile& built_in : kBuiltInProfiles) {
+    if (name != built_in.name) continue;
+    core::read_config(config, built_in.yaml, fmt::format("configs/{}.yaml", built_in.name));
     return config;
   }
   throw core::InputError(fmt::format("unknown profile {}; expected one of: {}", name,

@@ -72,7 +72,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
 // test can be wider than that of loops.
 features::Config features_of_lost(const Config& config, bool is_without_depth);
 
-// Names of the built-in profiles: "default", "recognition" (of `samewhere loops`), "paper".
+// Names of the built-in profiles: "default", "recognition" (of `samewhere loops`), "paper", "usual"
+// (bag of words and geometry alone, to compare with).
 std::vector<std::string> profile_names();
 
 // A built-in profile. Throws InputError naming the known ones.

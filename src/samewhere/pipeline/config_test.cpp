@@ -32,13 +32,24 @@ TEST(Profiles, RecognitionLooksHarderAndElseIsTheDefault) {
   EXPECT_GT(alone.verify.min_inliers, alone.verify.min_inliers_in_sequence);
 }
 
+TEST(Profiles, UsualAsksNeitherOdometryNorCompetingPlacesAndTrustsEachLoop) {
+  const Config usual = profile("usual");
+  EXPECT_EQ(usual.verify.prior, verify::Prior::kUnique);
+  EXPECT_EQ(usual.verify.min_inliers, 12);
+  EXPECT_GT(usual.retrieve.word_candidates, 0);
+  EXPECT_GE(usual.verify.max_odometry_chi_square, 1e9);
+  EXPECT_GE(usual.verify.max_competing_chi_square, 1e9);
+  EXPECT_GE(usual.verify.max_competing_place_ratio, 1e9);
+  EXPECT_EQ(usual.optimize.loop_loss, optimize::LoopLoss::kLeastSquares);
+}
+
 TEST(Profiles, AnUnknownOneIsRefusedWithTheNamesOfAll) {
   try {
     profile("recognise");
     FAIL();
   } catch (const core::InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "unknown profile recognise; expected one of: default, recognition, paper");
+                 "unknown profile recognise; expected one of: default, recognition, paper, usual");
   }
 }
 
