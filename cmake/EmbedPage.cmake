@@ -3,16 +3,13 @@
 #   PAGE       the page: a line `<!-- include NAME -->` stands for the content of the file NAME
 #   FILES      the files that may be included, separated by |
 #   TEMPLATE   HTML file to write, to look at
-#   SOURCE     C++ file to write: defines samewhere::report::page_template()
+#   SOURCE     C++ file to write
+#   FUNCTION   the function that it defines, in samewhere::report, with the page as its value
 string(REPLACE "|" ";" FILES "${FILES}")
 file(READ ${PAGE} page)
 foreach(path IN LISTS FILES)
   get_filename_component(name ${path} NAME)
   file(READ ${path} content)
-  string(FIND "${page}" "<!-- include ${name} -->" at)
-  if(at LESS 0)
-    message(FATAL_ERROR "${PAGE}: does not include ${name}")
-  endif()
   string(REPLACE "<!-- include ${name} -->" "${content}" page "${page}")
 endforeach()
 if(page MATCHES "<!-- include ([^ ]+) -->")
@@ -31,7 +28,7 @@ while(at LESS num_bytes)
 endwhile()
 file(WRITE ${SOURCE} "#include <samewhere/report/page_template.hpp>\n
 namespace samewhere::report {
-std::string_view page_template() {
+std::string_view ${FUNCTION}() {
   static constexpr char kPage[] =
 ${literals};
   return {kPage, sizeof(kPage) - 1};

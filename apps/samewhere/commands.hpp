@@ -12,6 +12,7 @@ void add_twin_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_dense_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app);
 void add_ledger_command(CLI::App& app);

@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   add_eval_command(app);
   add_dense_command(app);
   add_export_command(app);
+  add_compare_command(app);
   add_bench_command(app, exit_code);
   add_info_command(app);
   add_convert_command(app);

@@ -103,13 +103,16 @@ COUNT_PIXELS = """
 """
 
 
+def kind_of(candidate):
+    """How the page names the verdict of a candidate of loops.json, ground truth apart."""
+    if candidate["verdict"] == "NOT" and candidate["stage"] == "withdrawn":
+        return "withdrawn"
+    return {"LOOP": "accepted", "NOT": "rejected", "AMBIGUOUS": "ambiguous"}[candidate["verdict"]]
+
+
 def kinds_in(loops):
     """How many candidates the page should show per verdict."""
-    kinds = collections.Counter()
-    for candidate in loops["candidates"]:
-        is_withdrawn = candidate["verdict"] == "NOT" and candidate["stage"] == "withdrawn"
-        kinds["withdrawn" if is_withdrawn else {"LOOP": "accepted", "NOT": "rejected", "AMBIGUOUS": "ambiguous"}[candidate["verdict"]]] += 1
-    return kinds
+    return collections.Counter(map(kind_of, loops["candidates"]))
 
 
 def check_scene(page):
@@ -160,7 +163,7 @@ def check_click_on_loop(page):
     webdriver.ActionChains(page.driver).move_to_element_with_offset(page.by_id("canvas"), at[0], at[1]).click().perform()
     selected = page.wait("return samewhere.state.get('selected')?.id")
     page.check("a click on its line selects it", selected is not None, selected)
-    drawn = page.wait("return document.getElementById('pair')?.dataset.drawn")
+    drawn = page.wait("return document.querySelector('#detail .pair')?.dataset.drawn")
     page.check("its images appear", drawn == str(selected))
     page.check("its scores stand beside thresholds", "≥" in page.by_id("detail").text)
     page.check("its reason is given", len(page.driver.find_element(By.CSS_SELECTOR, ".reason").text) > 10)

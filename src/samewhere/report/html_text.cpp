@@ -1,3 +1,4 @@
+#include <samewhere/core/errors.hpp>
 #include <samewhere/report/html_text.hpp>
 
 namespace samewhere::report {
@@ -27,6 +28,29 @@ std::string escaped(std::string_view text) {
     }
   }
   return html;
+}
+
+std::string filled(
+    std::string_view page,
+    std::initializer_list<std::pair<std::string_view, std::string>> text_of_placeholder) {
+  std::string html;
+  for (const auto& [placeholder, text] : text_of_placeholder) {
+    const std::size_t at = page.find(placeholder);
+    core::require(at != std::string_view::npos, "the page has a place for each of its parts");
+    html.append(page.substr(0, at)).append(text);
+    page.remove_prefix(at + placeholder.size());
+  }
+  return html.append(page);
+}
+
+std::string for_script(const nlohmann::ordered_json& json) {
+  // a name that is no UTF-8 must not cost the whole text
+  const std::string text =
+      json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) c == '<' ? safe.append("\\u003c") : safe.append(1, c);
+  return safe;
 }
 
 }  // namespace samewhere::report

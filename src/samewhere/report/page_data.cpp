@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <samewhere/report/funnel.hpp>
+#include <samewhere/report/html_text.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/packed.hpp>
 #include <samewhere/report/page_data.hpp>
@@ -21,17 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kPageVersion = 1;
 constexpr double kStampStep_s = 1e-4;
-
-// As it may stand in a script element. A name that is no UTF-8 must not cost the whole text.
-std::string for_script(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) c == '<' ? safe.append("\\u003c") : safe.append(1, c);
-  return safe;
-}
 
 Json numbers(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
@@ -218,6 +209,7 @@ Json candidates_json(const RunRecord& record) {
   for (const core::LedgerRow* row : rows) {
     Json entry = Json::parse(ledger_row_json(*row));
     entry["id"] = row->candidate.id.index();
+    if (record.false_loops.contains(row->candidate.id)) entry["is_false"] = true;
     if (const auto found = earlier.find(row->candidate.id); found != earlier.end())
       entry["earlier"] = found->second;
     if (const auto found = record.matches.find(row->candidate.id); found != record.matches.end())

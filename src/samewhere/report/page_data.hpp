@@ -7,6 +7,8 @@
 
 namespace samewhere::report {
 
+inline constexpr int kPageVersion = 1;  // of the objects in page/README.md
+
 // How much the report page holds, for it to open at once whatever the length of the run. The page
 // states what was left out.
 inline constexpr std::size_t kMaxPagePoints = 400'000;

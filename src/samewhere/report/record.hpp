@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,9 +66,10 @@ struct RunRecord {
   std::string source;               // what the user asked for: a folder, a file, twin:...
   std::vector<FrameRecord> frames;  // in the order of the source
   core::Ledger ledger;
-  core::Trajectory odometry;          // before any correction; may be empty
-  core::Trajectory truth;             // aligned into the world of the estimate; may be empty
-  std::vector<ColouredPoint> points;  // of the map
+  std::set<core::CandidateId> false_loops;  // accepted, and the ground truth contradicts them
+  core::Trajectory odometry;                // before any correction; may be empty
+  core::Trajectory truth;                   // aligned into the world of the estimate; may be empty
+  std::vector<ColouredPoint> points;        // of the map
   std::map<core::FrameId, std::string> thumbnails;  // JPEG (jpeg.hpp), of keyframes; in recognition
                                                     // alone, of the frames in the ledger
   std::map<core::CandidateId, std::vector<ImageMatch>> matches;  // of some candidates

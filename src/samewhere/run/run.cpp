@@ -226,6 +226,7 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
                                           num_live(slam.map().landmarks)));
   record.figures.push_back(describer_figure(config.describe, slam.describer_checksum()));
   record.truth = aligned_truth(evaluation, truth);
+  record.false_loops = false_loops_of(record.ledger, evaluation);
 }
 
 void report_coverage(const RunOdometry& odometry, report::RunRecord& record) {

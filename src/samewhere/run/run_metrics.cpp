@@ -238,6 +238,26 @@ SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& tr
   return evaluation;
 }
 
+std::set<core::CandidateId> false_loops_of(const core::Ledger& ledger,
+                                           const SlamEvaluation& evaluation) {
+  std::set<std::pair<int, int>> are_false;
+  for (const evaluate::CheckedLoop& checked : evaluation.loops.loops) {
+    if (checked.truth == evaluate::LoopTruth::kFalse)
+      are_false.emplace(checked.loop.query, checked.loop.match);
+  }
+  std::set<core::CandidateId> ids;
+  for (const core::LedgerRow* row : report::final_rows(ledger)) {
+    const core::Candidate& candidate = row->candidate;
+    const std::pair pair{static_cast<int>(candidate.query.index()),
+                         static_cast<int>(candidate.match.index())};
+    const bool is_own_loop = core::is_loop(row->verdict) &&
+                             candidate.origin != core::Origin::kRelocalization &&
+                             candidate.match.session() == candidate.query.session();
+    if (is_own_loop && are_false.contains(pair)) ids.insert(candidate.id);
+  }
+  return ids;
+}
+
 core::Trajectory aligned_truth(const SlamEvaluation& evaluation, const core::Truth& truth) {
   if (!evaluation.ate) return {};
   const core::Sim3 estimate_from_truth = inverse(evaluation.ate->truth_from_estimate);

@@ -74,6 +74,10 @@ struct SlamEvaluation {
 
 SlamEvaluation evaluate_slam(const SlamFindings& findings, const core::Truth& truth);
 
+// The accepted loops of the ledger that the ground truth contradicts.
+std::set<core::CandidateId> false_loops_of(const core::Ledger& ledger,
+                                           const SlamEvaluation& evaluation);
+
 // The truth moved into the world of the estimate, to be drawn with it; empty if they cannot be
 // aligned.
 core::Trajectory aligned_truth(const SlamEvaluation& evaluation, const core::Truth& truth);

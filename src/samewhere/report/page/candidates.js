@@ -42,7 +42,7 @@
     fillSelects() {
       const ofCheck = {};
       for (const candidate of this.run.candidates) {
-        if (candidate.kind !== 'accepted') ofCheck[candidate.stage] = (ofCheck[candidate.stage] || 0) + 1;
+        if (candidate.verdict !== 'LOOP') ofCheck[candidate.stage] = (ofCheck[candidate.stage] || 0) + 1;
       }
       byId('check-filter').append(element('option', { value: '' }, 'all'),
         ...Object.entries(ofCheck).map(([check, count]) => element('option', { value: check }, `${check} (${count})`)));
@@ -75,7 +75,7 @@
       const minimum = this.minimum(score);
       byId('score-text').textContent = minimum > 0 ? number(minimum) : 'all';
       const found = this.run.candidates.filter((candidate) => this.kinds.has(candidate.kind)
-        && (!check || (candidate.kind !== 'accepted' && candidate.stage === check))
+        && (!check || (candidate.verdict !== 'LOOP' && candidate.stage === check))
         && (minimum <= 0 || (candidate.scores[score] || 0) >= minimum));
       found.sort(orders[byId('order').value]);
       this.found = found;
@@ -150,6 +150,7 @@
   }
 
   samewhere.verdictText = function (candidate) {
+    if (candidate.kind === 'false') return 'accepted, false by the ground truth';
     if (candidate.kind === 'rejected') return `rejected: ${candidate.stage}`;
     if (candidate.kind === 'ambiguous') return `ambiguous: ${candidate.stage}`;
     return candidate.kind + (candidate.is_by_hand ? ' by hand' : '');
@@ -180,7 +181,7 @@
       this.run = run;
       this.candidate = candidate;
       this.shown = shownMatches;
-      this.canvas = element('canvas', { id: 'pair', role: 'img', title: 'enlarge', 'aria-label': `frame ${candidate.query} and frame ${candidate.matchName}`, onclick: () => this.enlarge() });
+      this.canvas = element('canvas', { class: 'pair', role: 'img', title: 'enlarge', 'aria-label': `frame ${candidate.query} and frame ${candidate.matchName}`, onclick: () => this.enlarge() });
       this.nodes = [this.heading(close), this.canvas, this.captions(), this.toggles(), ...this.sentences(), this.table()];
     }
 

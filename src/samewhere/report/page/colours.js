@@ -42,11 +42,29 @@
   // How a kind of candidate is drawn: width in pixels, dash and gap in pixels, mark.
   samewhere.lineStyles = {
     accepted: { width: 4, dash: null, opacity: 1, mark: 'circle', word: 'accepted' },
+    false: { width: 5, dash: null, opacity: 1, mark: 'cross', word: 'false' },
     withdrawn: { width: 3, dash: [10, 4], opacity: 0.95, mark: 'triangle', word: 'withdrawn' },
     ambiguous: { width: 2, dash: [2, 4], opacity: 0.9, mark: 'diamond', word: 'ambiguous' },
     rejected: { width: 1, dash: null, opacity: 0.6, mark: null, word: 'rejected' },
   };
-  samewhere.kindNames = ['accepted', 'withdrawn', 'ambiguous', 'rejected'];
+  // false: accepted, and the ground truth contradicts it
+  samewhere.kindNames = ['accepted', 'false', 'withdrawn', 'ambiguous', 'rejected'];
+
+  // Light or dark as the system prefers, until switched by the function returned; light on paper.
+  samewhere.startTheme = function (states) {
+    const preferred = matchMedia('(prefers-color-scheme: dark)');
+    const apply = (isDark) => {
+      const theme = isDark ? 'dark' : 'light';
+      document.documentElement.dataset.theme = theme;
+      states.forEach((state) => state.set('theme', theme));
+    };
+    preferred.addEventListener('change', (event) => apply(event.matches));
+    apply(preferred.matches);
+    let isDarkOnScreen = false;
+    addEventListener('beforeprint', () => { isDarkOnScreen = samewhere.isDark(); apply(false); });
+    addEventListener('afterprint', () => apply(isDarkOnScreen));
+    return () => apply(!samewhere.isDark());
+  };
 
   // A short piece of the line of a kind, for legends.
   samewhere.lineSample = function (kind) {
@@ -67,17 +85,30 @@
     if (mode === 'status') {
       return { colour: (row) => samewhere.channels(samewhere.statusColour(run.statusName(row))) };
     }
-    const value = { time: (row) => run.times[row], error: (row) => run.errors[row], height: (row) => run.positions[3 * row + 2] }[mode];
+    const valueOf = (of, row) => ({ time: of.times[row], error: of.errors[row], height: of.positions[3 * row + 2] })[mode];
+    const value = (row) => valueOf(run, row);
     let low = Infinity;
     let high = -Infinity;
-    for (let row = 0; row < run.num; ++row) {
-      if (!Number.isFinite(value(row))) continue;
-      low = Math.min(low, value(row));
-      high = Math.max(high, value(row));
+    for (const of of run.beside || [run]) { // runs that are compared have one scale
+      for (let row = 0; row < of.num; ++row) {
+        if (!Number.isFinite(valueOf(of, row))) continue;
+        low = Math.min(low, valueOf(of, row));
+        high = Math.max(high, valueOf(of, row));
+      }
     }
     const span = high - low || 1;
     const unit = mode === 'time' ? 's' : run.unit;
     return { low, high, unit, gradient: samewhere.scaleGradient(mode),
              colour: (row) => (Number.isFinite(value(row)) ? samewhere.scaleColour(mode, (value(row) - low) / span) : samewhere.channels(samewhere.css('idle'))) };
+  };
+  samewhere.showLegend = function (run, mode) {
+    const colouring = samewhere.pathColouring(run, mode);
+    const legend = samewhere.byId('legend');
+    legend.replaceChildren();
+    if (!colouring.gradient) return;
+    const bar = samewhere.element('span', { class: 'gradient' });
+    bar.style.background = colouring.gradient;
+    const end = (value) => `${samewhere.number(value)} ${colouring.unit}`;
+    legend.append(end(colouring.low), bar, end(colouring.high));
   };
 })();

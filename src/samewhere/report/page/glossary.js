@@ -6,6 +6,7 @@
     'false loop closure': 'An accepted loop closure between two different places. One is enough to fold the map.',
     'perceptual aliasing': 'Different places look alike, for instance two corridors of one building.',
     accepted: 'All checks passed: the candidate is a loop closure.',
+    false: 'Accepted, and the ground truth contradicts it: the relative pose is wrong by more than 0.2 m or 6 degrees.',
     rejected: 'A check failed. The candidate is not in the pose graph.',
     ambiguous: 'Neither accepted nor rejected: what is known would also hold of another place.',
     withdrawn: 'Accepted first, and taken out of the pose graph later, when it contradicted more likely loop closures.',
@@ -65,6 +66,9 @@
     };
     document.addEventListener('mouseover', show);
     document.addEventListener('focusin', show);
+  };
+
+  samewhere.showGlossary = function () {
     const list = samewhere.byId('glossary');
     for (const [name, text] of Object.entries(terms).sort((a, b) => a[0].localeCompare(b[0]))) {
       list.append(samewhere.element('dt', {}, name), samewhere.element('dd', {}, text));

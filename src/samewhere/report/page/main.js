@@ -14,20 +14,6 @@
     return new samewhere.Run(block('run'), block('pictures'), block('durations'));
   }
 
-  function startTheme(state) {
-    const preferred = matchMedia('(prefers-color-scheme: dark)');
-    const apply = (isDark) => {
-      document.documentElement.dataset.theme = isDark ? 'dark' : 'light';
-      state.set('theme', isDark ? 'dark' : 'light');
-    };
-    preferred.addEventListener('change', (event) => apply(event.matches));
-    apply(preferred.matches);
-    let isDarkOnScreen = false;
-    addEventListener('beforeprint', () => { isDarkOnScreen = samewhere.isDark(); apply(false); });
-    addEventListener('afterprint', () => apply(isDarkOnScreen));
-    return () => apply(!samewhere.isDark());
-  }
-
   // A part that the map has, to show or hide.
   function addLayer(state, name, text, isShown) {
     const box = element('input', { type: 'checkbox', onchange: () => state.set('layers', { ...state.get('layers'), [name]: box.checked }) });
@@ -65,17 +51,7 @@
     const modes = samewhere.colourModes(run);
     select.append(...modes.map((mode) => element('option', { value: mode.name }, mode.text)));
     select.addEventListener('change', () => state.set('colourBy', select.value));
-    const showLegend = () => {
-      const colouring = samewhere.pathColouring(run, state.get('colourBy'));
-      const legend = byId('legend');
-      legend.replaceChildren();
-      if (colouring.gradient) {
-        const bar = element('span', { class: 'gradient' });
-        bar.style.background = colouring.gradient;
-        const end = (value) => `${samewhere.number(value)} ${colouring.unit}`;
-        legend.append(end(colouring.low), bar, end(colouring.high));
-      }
-    };
+    const showLegend = () => samewhere.showLegend(run, state.get('colourBy'));
     state.watch('colourBy', (mode) => { select.value = mode; showLegend(); });
     state.watch('theme', showLegend);
     return () => {
@@ -123,7 +99,7 @@
   function start() {
     const run = readRun();
     const state = new samewhere.State({ row: 0, selected: null, candidates: [], colourBy: 'time', theme: 'light', layers: {}, heights: null, isFollowing: false });
-    const switchTheme = startTheme(state);
+    const switchTheme = samewhere.startTheme([state]);
     const candidates = new samewhere.Candidates(run, state);
     samewhere.showSummary(run, (check) => { samewhere.openTab('candidates'); candidates.showCheck(check); });
     const tabs = document.querySelectorAll('[role=tab]');
@@ -135,6 +111,7 @@
     const timeline = new samewhere.Timeline(run, state);
     const plots = new samewhere.Plots(run, state);
     samewhere.startTooltips();
+    samewhere.showGlossary();
     byId('theme').addEventListener('click', switchTheme);
     const help = () => byId('help-dialog').showModal();
     byId('help').addEventListener('click', help);

@@ -30,7 +30,7 @@
     return points;
   }
 
-  const pointStyles = { accepted: 'circle', withdrawn: 'triangle', ambiguous: 'rectRot', rejected: 'crossRot' };
+  const pointStyles = { accepted: 'circle', false: 'cross', withdrawn: 'triangle', ambiguous: 'rectRot', rejected: 'crossRot' };
 
   class Plots {
     constructor(run, state) {

@@ -52,6 +52,7 @@
 
   const kinds = { LOOP: 'accepted', AMBIGUOUS: 'ambiguous', NOT: 'rejected' };
   function kindOf(candidate) {
+    if (candidate.is_false) return 'false';
     return candidate.stage === 'withdrawn' && candidate.verdict === 'NOT' ? 'withdrawn' : kinds[candidate.verdict];
   }
 

@@ -11,11 +11,12 @@
     if (mark === 'dot') pen.arc(32, 32, 26, 0, 7);
     if (mark === 'circle') pen.arc(32, 32, 20, 0, 7);
     if (mark === 'diamond') { pen.moveTo(32, 6); pen.lineTo(56, 32); pen.lineTo(32, 58); pen.lineTo(8, 32); }
+    if (mark === 'cross') { pen.moveTo(12, 12); pen.lineTo(52, 52); pen.moveTo(52, 12); pen.lineTo(12, 52); }
     if (mark === 'triangle') { pen.moveTo(32, 8); pen.lineTo(58, 54); pen.lineTo(6, 54); }
-    pen.closePath();
+    if (mark !== 'cross') pen.closePath();
     pen.fillStyle = ground;
     pen.fill();
-    pen.lineWidth = 10;
+    pen.lineWidth = mark === 'cross' ? 16 : 10;
     pen.strokeStyle = colour;
     pen.stroke();
     return new THREE.CanvasTexture(canvas);
@@ -65,8 +66,22 @@
     return lines;
   }
 
+  // Bounds of what is looked at: the path, and most landmarks near it.
+  samewhere.roomOf = function (run) {
+    const ofPath = run.bounds();
+    const pathLength = Math.hypot(...ofPath.map(([low, high]) => high - low));
+    const { positions } = run.points;
+    return ofPath.map(([low, high], axis) => {
+      const values = positions.filter((_, i) => i % 3 === axis).sort();
+      if (!values.length) return [low, high];
+      const at = (share) => values[Math.floor(share * (values.length - 1))];
+      return [Math.min(low, Math.max(at(0.04), low - 2 * pathLength)), Math.max(high, Math.min(at(0.96), high + 2 * pathLength))];
+    });
+  };
+
   class Scene {
-    constructor(run, state, canvas, { isSlow }) {
+    // room: bounds of what is looked at, [lowest, highest] per axis, if they are not those of the run alone.
+    constructor(run, state, canvas, { isSlow, room }) {
       this.run = run;
       this.state = state;
       this.canvas = canvas;
@@ -84,7 +99,7 @@
       this.clip = [new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Plane(new THREE.Vector3(0, 0, -1), 0)];
       this.pictureTexture = null;
       this.shown = [];
-      this.measureRoom();
+      this.useRoom(room || samewhere.roomOf(run));
       this.build();
       this.cut(state.get('heights'));
       this.watch();
@@ -104,17 +119,7 @@
       this.pickOnClick();
     }
 
-    // Centre and radius of what is looked at: the path, and most landmarks near it.
-    measureRoom() {
-      const ofPath = this.run.bounds();
-      const pathLength = Math.hypot(...ofPath.map(([low, high]) => high - low));
-      const { positions } = this.run.points;
-      const bounds = ofPath.map(([low, high], axis) => {
-        const values = positions.filter((_, i) => i % 3 === axis).sort();
-        if (!values.length) return [low, high];
-        const at = (share) => values[Math.floor(share * (values.length - 1))];
-        return [Math.min(low, Math.max(at(0.04), low - 2 * pathLength)), Math.max(high, Math.min(at(0.96), high + 2 * pathLength))];
-      });
+    useRoom(bounds) {
       this.centre = new THREE.Vector3(...bounds.map(([low, high]) => (low + high) / 2));
       this.radius = Math.max(0.5, Math.hypot(...bounds.map(([low, high]) => (high - low) / 2)));
       this.frustumLength = Math.min(0.9, Math.max(0.12, this.radius / 16));
@@ -241,7 +246,7 @@
     drawLines(name, candidates, kind, style) {
       const values = candidates.flatMap(({ ends }) => [...ends[0], ...ends[1]]);
       const dash = style.dash && style.dash.map((pixels) => (pixels * this.radius) / 400);
-      const options = { ...style, colour: new THREE.Color(samewhere.css(kind)), dash, depthTest: kind !== 'accepted', order: 4 };
+      const options = { ...style, colour: new THREE.Color(samewhere.css(kind)), dash, depthTest: kind !== 'accepted' && kind !== 'false', order: 4 };
       this.replace(name, values.length ? (kind === 'rejected' ? thinLines : wideLines)(values, options) : null);
       this.size(this[name]);
     }
@@ -331,7 +336,7 @@
       const elevation = name === 'above' ? Math.PI / 2 - 1e-4 : 0.9;
       const azimuth = name === 'above' ? -Math.PI / 2 : -Math.PI / 2 - 0.3;
       const towards = new THREE.Vector3(Math.cos(azimuth) * Math.cos(elevation), Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation));
-      const distance = this.distanceThatFits(towards);
+      const distance = this.linked ? Math.max(...this.linked.map((scene) => scene.distanceThatFits(towards))) : this.distanceThatFits(towards);
       this.moveCamera(this.centre.clone().add(towards.multiplyScalar(distance)), this.centre.clone(), isMoving);
     }
 
@@ -376,6 +381,22 @@
         if (share < 1) requestAnimationFrame(step);
       };
       step();
+    }
+
+    // Scenes of one view: the camera of each moves with the others.
+    static link(scenes) {
+      for (const scene of scenes) {
+        scene.linked = scenes;
+        scene.controls.addEventListener('change', () => {
+          for (const other of scenes) {
+            if (other === scene) continue;
+            other.camera.position.copy(scene.camera.position);
+            other.camera.quaternion.copy(scene.camera.quaternion);
+            other.controls.target.copy(scene.controls.target);
+            other.render();
+          }
+        });
+      }
     }
 
     zoom(factor) {
@@ -432,7 +453,7 @@
 
   // Of lines to choose from, the one with least distance to (x, y) under a limit; accepted loops win ties.
   samewhere.nearestLine = function (candidates, onCanvas, x, y, limit) {
-    const order = { accepted: 0, withdrawn: 1, ambiguous: 2, rejected: 3 };
+    const order = { false: 0, accepted: 0, withdrawn: 1, ambiguous: 2, rejected: 3 };
     let best = null;
     let bestCost = limit;
     for (const candidate of candidates) {

@@ -49,7 +49,7 @@
       element('span', { class: 'bar' }, bar('passed', check.num_arrived - check.num_rejected), bar('rejected', check.num_rejected)),
       element('span', { class: 'numbers' }, element('b', {}, number(check.num_rejected)), ` of ${number(check.num_arrived)} rejected`)));
     const counts = (kind) => run.candidates.filter((candidate) => candidate.kind === kind).length;
-    for (const kind of ['ambiguous', 'accepted']) {
+    for (const kind of ['ambiguous', 'accepted', ...(counts('false') ? ['false'] : [])]) {
       rows.push(element('div', { class: 'check' }, element('span', { class: 'name' }, samewhere.term(kind)), element('span', { class: 'bar' }, bar(kind, counts(kind))), element('span', { class: 'numbers' }, element('b', {}, number(counts(kind))))));
     }
     byId('funnel').append(...(total ? rows : [element('p', {}, 'The run has no loop candidates.')]));
