@@ -19,6 +19,11 @@
 namespace samewhere::core {
 namespace {
 
+Severity severity_of(spdlog::level::level_enum level) {
+  if (level < spdlog::level::warn) return Severity::kInfo;
+  return level == spdlog::level::warn ? Severity::kWarning : Severity::kError;
+}
+
 // "NAME: LEVEL: MESSAGE", in one line that a terminal only shows.
 class PrintableFormatter : public spdlog::formatter {
  public:
@@ -27,7 +32,12 @@ class PrintableFormatter : public spdlog::formatter {
     const std::string clean = printable_line(payload, kMaxMessage);
     spdlog::details::log_msg shown = message;
     shown.payload = clean;
-    pattern_.format(shown, line);
+    spdlog::memory_buf_t plain;
+    pattern_.format(shown, plain);
+    std::string_view text(plain.data(), plain.size());
+    if (text.ends_with('\n')) text.remove_suffix(1);
+    const std::string whole = line_for_stderr(text, severity_of(message.level)) + "\n";
+    line.append(whole.data(), whole.data() + whole.size());
   }
 
   std::unique_ptr<spdlog::formatter> clone() const override {
@@ -70,7 +80,8 @@ int guarded(const std::string& name, const std::function<int()>& work) {
 
 int complain(const std::string& name, const std::string& message, int exit_code) {
   // not fmt::print, which throws where stderr is closed
-  std::fputs((name + ": " + printable_line(message, kMaxMessage) + "\n").c_str(), stderr);
+  const std::string line = name + ": " + printable_line(message, kMaxMessage);
+  std::fputs((line_for_stderr(line, Severity::kError) + "\n").c_str(), stderr);
   return exit_code;
 }
 

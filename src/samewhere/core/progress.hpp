@@ -2,18 +2,21 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace samewhere::core {
 
-// A progress line on stderr. On a terminal it is redrawn in place; elsewhere (a log file) it is
-// printed at every tenth. Silent for work that takes less than half a second.
+// A progress line on stderr: items done, rate, time left. On a terminal it is redrawn in place, at
+// most as wide as that; elsewhere (a log file) it is printed at every tenth, or each minute where
+// the total is unknown. Silent for work that takes less than half a second.
 class Progress {
  public:
-  // Quiet: without a line, for a command that was asked to print none.
+  // total 0: unknown, as of a camera. Quiet: without a line, for a command that was asked to print
+  // none.
   Progress(std::string what, int total, bool is_quiet = false);
 
-  // `done` items of `total` are finished.
-  void update(int done);
+  // `done` items of `total` are finished. `note`: what else is to be known, "tracking, 2 loops".
+  void update(int done, std::string_view note = {});
   // Ends the line. Called by the destructor too.
   void finish();
 
@@ -22,7 +25,8 @@ class Progress {
   ~Progress();
 
  private:
-  void draw(int done, double elapsed_s);
+  bool is_due(int done, double elapsed_s) const;
+  void draw(int done, double elapsed_s, std::string_view note);
 
   std::string what_;
   int total_;

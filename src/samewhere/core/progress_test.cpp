@@ -27,10 +27,11 @@ TEST(Progress, LongWorkPrintsALineWhereverItIsACountOutsideTheTotalIncluded) {
     const auto start = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(600)) {
     }
-    progress.update(5);
+    progress.update(5, "tracking, 2 loops");
     progress.update(12);
   }
   const std::string printed = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(printed, testing::HasSubstr(" left  tracking, 2 loops\n"));
   EXPECT_THAT(printed, testing::HasSubstr("frames 5/10"));
   EXPECT_THAT(printed, testing::HasSubstr("frames 10/10"));
 }
@@ -39,6 +40,18 @@ TEST(Progress, QuietWorkPrintsNothingHoweverLongItIs) {
   testing::internal::CaptureStderr();
   {
     Progress progress("frames", 10, true);
+    const auto start = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(510)) {
+    }
+    progress.update(10);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Progress, OutsideATerminalWorkWithoutATotalPrintsNothingBeforeAMinute) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 0);
     const auto start = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(510)) {
     }

@@ -1,7 +1,9 @@
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <samewhere/core/printable.hpp>
@@ -12,6 +14,25 @@ namespace {
 
 int first_error = 0;  // of standard output; the main thread alone prints
 
+bool is_coloured() {
+  const char* const no_color = std::getenv("NO_COLOR");  // no-color.org
+  const char* const kind = std::getenv("TERM");
+  const bool is_plain = kind == nullptr || std::string_view(kind) == "dumb";
+  return ::isatty(STDERR_FILENO) == 1 && (no_color == nullptr || *no_color == 0) && !is_plain;
+}
+
+std::string_view colour_of(Severity severity) {
+  switch (severity) {
+    case Severity::kWarning:
+      return "\x1b[33m";
+    case Severity::kError:
+      return "\x1b[31m";
+    case Severity::kInfo:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
 
 void print_text(std::string_view text) {
@@ -19,6 +40,17 @@ void print_text(std::string_view text) {
   errno = 0;
   const bool is_written = std::fwrite(clean.data(), 1, clean.size(), stdout) == clean.size();
   if (!is_written && first_error == 0) first_error = errno != 0 ? errno : EIO;
+}
+
+std::size_t stderr_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+std::string line_for_stderr(std::string_view line, Severity severity) {
+  const std::string_view start = ::isatty(STDERR_FILENO) == 1 ? "\r\x1b[2K" : "";
+  const std::string_view colour = is_coloured() ? colour_of(severity) : "";
+  return fmt::format("{}{}{}{}", start, colour, line, colour.empty() ? "" : "\x1b[0m");
 }
 
 void occupy_standard_streams() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,14 @@ template <class... Args>
 void print(fmt::format_string<Args...> format, Args&&... args) {
   print_text(fmt::format(format, std::forward<Args>(args)...));
 }
+
+// Columns of the terminal that stderr is; 0 if it is none or does not tell.
+std::size_t stderr_width();
+
+// A line for stderr as it is shown there: on a terminal it replaces an unfinished progress line,
+// and is coloured unless the variable NO_COLOR is set or TERM is `dumb`.
+enum class Severity { kInfo, kWarning, kError };
+std::string line_for_stderr(std::string_view line, Severity severity);
 
 // Makes sure that no file is opened under the number of a standard stream: of one that was closed
 // when the program started, reading and writing fail.

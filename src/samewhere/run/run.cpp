@@ -58,7 +58,7 @@ class FrameFeed {
         progress_("frames", source.info().num_frames, is_quiet) {}
 
   std::optional<core::Frame> next() {
-    if (num_given_ > 0) progress_.update(num_given_ + num_dropped_);
+    if (num_given_ > 0) progress_.update(num_given_ + num_dropped_, note_);
     outcome_.record.is_interrupted = core::is_interrupted();
     if (outcome_.record.is_interrupted) return std::nullopt;
     try {
@@ -77,6 +77,9 @@ class FrameFeed {
     return std::nullopt;
   }
 
+  // What the progress line tells beside the frames.
+  void note(std::string text) { note_ = std::move(text); }
+
   // When all frames were given: how long they took to come, and what was dropped meanwhile.
   void report() const {
     report::RunRecord& record = outcome_.record;
@@ -91,8 +94,30 @@ class FrameFeed {
   RunOutcome& outcome_;
   core::Timings timings_;
   core::Progress progress_;
+  std::string note_;
   int num_given_ = 0;
   int num_dropped_ = 0;
+};
+
+// The loops of a run that goes on.
+class LoopCount {
+ public:
+  // Verdicts in the order in which they are told.
+  void add(const core::Ledger& rows) {
+    for (const core::LedgerRow& row : rows) {
+      if (row.candidate.origin == core::Origin::kRelocalization) continue;
+      if (core::is_loop(row.verdict))
+        accepted_.insert(row.candidate.id);
+      else
+        accepted_.erase(row.candidate.id);
+    }
+  }
+  std::string text() const {
+    return fmt::format("{} loop{}", accepted_.size(), accepted_.size() == 1 ? "" : "s");
+  }
+
+ private:
+  std::set<core::CandidateId> accepted_;
 };
 
 // Read ahead in a thread of its own: one frame, or in real time the newest.
@@ -289,6 +314,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   if (odometry) mapped.follow(odometry->path());
   const pipeline::Slam& slam = mapped.slam();
   std::vector<std::string> names;
+  LoopCount loops;
   FrameFeed feed(*source, outcome, is_quiet);
   while (std::optional<core::Frame> frame = feed.next()) {
     const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
@@ -296,6 +322,8 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
     mapped.feed(*frame);
     names.push_back(frame->name);
     note_first_pose(slam, outcome.record);
+    loops.add(slam.newest_rows());
+    feed.note(fmt::format("{}, {}", core::name_of(slam.frames().back().status), loops.text()));
   }
 
   outcome.map_error = mapped.finish();
