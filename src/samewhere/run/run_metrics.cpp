@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <samewhere/core/match_from_query.hpp>
 #include <samewhere/report/figure.hpp>
 #include <samewhere/report/frames.hpp>
 #include <samewhere/report/funnel.hpp>
@@ -75,7 +76,9 @@ evaluate::AcceptedLoop loop_of(const core::LedgerRow& row, const StampOf& stamp_
   loop.match = static_cast<int>(row.candidate.match.index());
   loop.query_stamp_s = stamp_of.at(row.candidate.query);
   loop.match_stamp_s = stamp_of.at(row.candidate.match);
-  const auto& match_from_query = std::get<core::LoopClosure>(row.verdict).match_from_query;
+  // of a relocalization the verdict may be ambiguous: its place is known, the evidence is not
+  // enough
+  const auto match_from_query = core::match_from_query_of(row.verdict);
   if (match_from_query) loop.match_from_query = rigid_part(*match_from_query);
   return loop;
 }

@@ -84,6 +84,15 @@ TEST_F(Relocalizations, InItsCopyWhichIsWrong) {
   EXPECT_EQ(figure(evaluation, kRejoined), "0 of 1");
 }
 
+TEST_F(Relocalizations, OfAPlaceThatTheEvidenceLeavesAmbiguousIsCountedToo) {
+  recognised(12, 0, 2.0);
+  core::LedgerRow& row = ledger_.back();
+  core::Ambiguous ambiguous{.candidate = row.candidate.id, .stage = core::Refusal::kEvidence};
+  ambiguous.evidence.geometry.emplace().match_from_query = core::Sim3::from_rigid(at_x(2.0));
+  row.verdict = ambiguous;
+  EXPECT_EQ(figure(evaluated_if_found_at(2.0), kFound), "1 / 0 / 0");
+}
+
 // The place was told of an earlier view, and this one only of the right one.
 TEST_F(Relocalizations, ThePoseCountsAndNotTheVerdict) {
   recognised(12, 0, 2.0);

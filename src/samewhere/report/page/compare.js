@@ -45,7 +45,7 @@
       byId('run-columns').append(element('section', { class: 'run-column' },
         element('div', { class: 'run-head' }, element('h2', {}, run.name), this.headline()),
         element('div', { class: 'view-of-run' }, this.canvas)));
-      this.state = new samewhere.State({ row: Math.max(0, run.num - 1), selected: null, candidates: [], colourBy: run.hasTruth ? 'error' : 'time', theme: samewhere.isDark() ? 'dark' : 'light', layers: {}, heights: [-1e6, 1e6], isFollowing: false });
+      this.state = new samewhere.State({ row: Math.max(0, run.num - 1), selected: null, candidates: [], colourBy: run.hasTruth ? 'error' : 'time', theme: samewhere.isDark() ? 'dark' : 'light', layers: {}, heights: [-1e6, 1e6], isFollowing: false, isGrowing: false });
       this.map = webGL ? new samewhere.Scene(run, this.state, this.canvas, { ...webGL, room }) : new samewhere.Plan(run, this.state, this.canvas);
     }
 
@@ -138,7 +138,27 @@
         byId('time-text').textContent = `${Number(slider.value).toFixed(1)} s`;
       };
       slider.addEventListener('input', show);
+      byId('play').addEventListener('click', () => this.togglePlay(end, show));
       show();
+    }
+    // Paths and loops grow while the runs are played, in ten seconds at most.
+    togglePlay(end, show) {
+      const slider = byId('time-slider');
+      this.isPlaying = !this.isPlaying;
+      this.set('isGrowing', this.isPlaying);
+      byId('play').textContent = this.isPlaying ? '❚❚' : '▶';
+      if (!this.isPlaying) return;
+      if (Number(slider.value) >= end * 0.999) slider.value = 0;
+      const speed = Math.max(1, end / 10);
+      let before = performance.now();
+      const step = (now) => {
+        if (!this.isPlaying) return;
+        slider.value = Number(slider.value) + (speed * (now - before)) / 1000;
+        before = now;
+        show();
+        if (Number(slider.value) >= end * 0.999) byId('play').click(); else requestAnimationFrame(step);
+      };
+      requestAnimationFrame(step);
     }
 
     // The candidate in each run, if its verifier saw one of the same views.
@@ -203,9 +223,11 @@
     samewhere.startTooltips();
     const switchTheme = samewhere.startTheme(comparison.states);
     byId('theme').addEventListener('click', switchTheme);
-    const keys = { r: () => byId('view-reset').click(), t: () => byId('view-top').click(), l: switchTheme, Escape: () => comparison.set('selected', null) };
+    const keys = { ' ': () => byId('play').click(), r: () => byId('view-reset').click(), t: () => byId('view-top').click(), l: switchTheme, Escape: () => comparison.set('selected', null) };
     addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || !keys[event.key]) return;
+      if (event.key === ' ' && event.target.tagName === 'BUTTON') return;
+      event.preventDefault();
       keys[event.key]();
     });
     samewhere.comparison = comparison;

@@ -98,7 +98,7 @@
 
   function start() {
     const run = readRun();
-    const state = new samewhere.State({ row: 0, selected: null, candidates: [], colourBy: 'time', theme: 'light', layers: {}, heights: null, isFollowing: false });
+    const state = new samewhere.State({ row: 0, selected: null, candidates: [], colourBy: 'time', theme: 'light', layers: {}, heights: null, isFollowing: false, isGrowing: false });
     const switchTheme = samewhere.startTheme([state]);
     const candidates = new samewhere.Candidates(run, state);
     samewhere.showSummary(run, (check) => { samewhere.openTab('candidates'); candidates.showCheck(check); });

@@ -113,7 +113,8 @@
       this.state.onChange('colourBy', () => this.buildPath());
       this.state.onChange('candidates', (candidates) => this.showCandidates(candidates));
       this.state.onChange('selected', () => this.showSelected());
-      this.state.onChange('row', () => this.showCamera());
+      this.state.onChange('row', () => { this.showCamera(); this.showGrowth(); });
+      this.state.onChange('isGrowing', () => this.showGrowth());
       this.state.onChange('heights', (heights) => this.cut(heights));
       this.state.onChange('layers', () => this.showLayers());
       this.pickOnClick();
@@ -185,6 +186,7 @@
       const spacing = this.radius / 250;
       const dots = [];
       const colours = [];
+      this.dotsUntilRow = new Uint32Array(this.run.num + 1); // dots of the path up to each row
       for (const row of continuedRows(positions, this.run.num)) {
         const a = this.run.position(row - 1);
         const b = this.run.position(row);
@@ -193,7 +195,9 @@
           dots.push(...[0, 1, 2].map((k) => a[k] + ((b[k] - a[k]) * i) / num));
           colours.push(...colouring.colour(i * 2 < num ? row - 1 : row));
         }
+        this.dotsUntilRow[row] = dots.length / 3;
       }
+      for (let row = 1; row <= this.run.num; ++row) this.dotsUntilRow[row] = Math.max(this.dotsUntilRow[row], this.dotsUntilRow[row - 1]);
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(dots), 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(colours), 3));
@@ -201,7 +205,20 @@
       const path = dots.length ? new THREE.Points(geometry, material) : null;
       if (path) path.renderOrder = 3;
       this.replace('path', path);
+      this.showGrowth();
+    }
+
+    // While the run is played, path and candidates up to the time shown; else all.
+    showGrowth() {
+      const isGrowing = this.state.get('isGrowing');
+      if (this.path) this.path.geometry.setDrawRange(0, isGrowing ? this.dotsUntilRow[this.state.get('row')] : Infinity);
+      const numShown = this.candidatesNow(this.state.get('candidates')).length;
+      if (numShown !== this.shown.length) this.showCandidates(this.state.get('candidates'));
       this.render();
+    }
+    candidatesNow(candidates) {
+      const last = this.state.get('isGrowing') ? this.state.get('row') : Infinity;
+      return candidates.filter((candidate) => candidate.hasLine && candidate.queryRow <= last);
     }
 
     buildOtherPaths() {
@@ -230,7 +247,7 @@
     }
 
     showCandidates(candidates) {
-      this.shown = candidates.filter((candidate) => candidate.hasLine);
+      this.shown = this.candidatesNow(candidates);
       const limit = this.run.limits.find((entry) => entry.score === 'num_inliers');
       // rejected for too few inliers: many, and of little interest
       const isWeak = (candidate) => candidate.kind === 'rejected' && limit && (candidate.scores.num_inliers || 0) < limit.value;

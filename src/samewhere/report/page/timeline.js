@@ -39,6 +39,7 @@
     togglePlay() {
       this.isPlaying = !this.isPlaying;
       byId('play').textContent = this.isPlaying ? '❚❚' : '▶';
+      this.state.set('isGrowing', this.isPlaying);
       if (!this.isPlaying) return;
       if (this.state.get('row') >= this.run.num - 1) this.state.set('row', 0);
       // at least at the speed of the recording, and a whole run in half a minute
