@@ -235,6 +235,27 @@ TEST(Relocalization, DoesNotRelocalizeInAnUnmappedRoom) {
     EXPECT_EQ(slam.frames()[i].is_measured, i < num_before) << "frame " << i;
 }
 
+// The camera may have been carried to a look-alike place meanwhile: after a second motion still
+// tells, after twenty it does not.
+TEST(Relocalization, AfterALongGapAPoseThatCouldBeTrackedIsProvisional) {
+  const Config config = config_of("twin:office-loop?seed=7", 60);
+  const Walk walk = walk_of(config);
+  const auto status_after = [&](double gap_s) {
+    Slam slam(config);
+    std::size_t index = 0;
+    for (const auto& frame : walk.frames) slam.feed(with_id(frame, index++, 0));
+    for (int i = 0; i < 15; ++i) {
+      core::Frame frame = with_id(walk.frames.back(), index++, 0);
+      frame.stamp_s += gap_s;
+      slam.feed(frame);
+    }
+    slam.finish();
+    return slam.frames().back().status;
+  };
+  EXPECT_EQ(status_after(1.5), core::FrameStatus::kTracking);
+  EXPECT_EQ(status_after(20.0), core::FrameStatus::kProvisional);
+}
+
 TEST(Relocalization, RejectsPosesThatAreNotReachable) {
   const Config config = config_of("twin:office-loop?seed=7", 90);
   const Walk walk = walk_of(config);

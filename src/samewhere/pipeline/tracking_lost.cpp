@@ -24,8 +24,11 @@ bool Tracking::is_plausible(const scene::TrackedView& tracked) {
   if (tracked.pose.stamp_s - last->stamp_s <= kGap_s) return true;
   if (!is_reference_visible(last) || !is_reference_visible(log_.before(*last))) receive_map();
   const scene::MapVersion& map = map_.version();
-  return MotionPrediction(map, {last, log_.before(*last)}, tracked.pose.stamp_s, metre_of(map))
-      .allows(map, tracked.pose);
+  const MotionPrediction prediction(map, {last, log_.before(*last)}, tracked.pose.stamp_s,
+                                    metre_of(map));
+  // a look-alike place is tracked as well: as for a lost camera, motion must tell them apart
+  return prediction.log_likelihood_ratio(map, tracked.pose) >=
+         config_.track.relocalization.min_log_ratio;
 }
 
 std::optional<std::vector<Place>> Tracking::places_for(const core::Frame& frame,
