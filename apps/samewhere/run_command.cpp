@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include "print.hpp"
+#include "view_options.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
@@ -21,6 +22,7 @@
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/input/camera_file.hpp>
 #include <samewhere/report/funnel.hpp>
+#include <samewhere/report/html.hpp>
 #include <samewhere/report/results_folder.hpp>
 #include <samewhere/report/write.hpp>
 #include <samewhere/run/open_source.hpp>
@@ -45,6 +47,7 @@ struct RunCommand {
   bool is_forced = false;  // may replace the results of an earlier run
   ConfigOptions config;
   FigureOptions figures;
+  ViewOptions view;  // run only
 };
 
 // A folder name that tells where the run came from: the last part of a path, the preset of a twin.
@@ -177,13 +180,22 @@ std::filesystem::path begin_results(report::ResultsFolder& results, const pipeli
 
 run::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunCommand& command,
                         const pipeline::Config& config, Work work,
-                        const std::function<std::filesystem::path()>& begin) {
+                        const std::function<std::filesystem::path()>& begin,
+                        run::Watcher* watcher) {
   if (work == Work::kRecognition)
     return run::run_recognition(
         std::move(source), config, [&] { begin(); }, command.figures.is_quiet);
   return run::run_slam(std::move(source), config,
                        {.known = command.map, .is_known_fixed = command.localize, .begin = begin},
-                       command.figures.is_quiet);
+                       command.figures.is_quiet, watcher);
+}
+
+// Pages that are open show the report until they are closed.
+void show_report(view::LiveView& viewer, const report::RunRecord& record) {
+  if (record.is_interrupted || viewer.num_pages() == 0) return;
+  viewer.finish(report::page_blocks(record));
+  core::note("the page shows the report; close it, or Ctrl-C, to end");
+  viewer.wait_for_pages();
 }
 
 // Each on a line of stderr. Returns the exit code.
@@ -196,6 +208,7 @@ int report_errors(const std::vector<std::string>& errors, bool is_interrupted) {
 int execute(const RunCommand& command, Work work) {
   const pipeline::Config config = config_of(command, work);
   report::ResultsFolder results(place_for_results(command, config.source));
+  const std::unique_ptr<view::LiveView> viewer = open_live_view(command.view);
   auto source = run::open_source(config);
   require_realtime_as_told(command.source, source->info(), config.input.realtime);
   std::optional<run::SelfCalibration> calibration;
@@ -203,8 +216,9 @@ int execute(const RunCommand& command, Work work) {
     calibration = run::calibrate_if_unknown(source, config);
     run::require_slam_input(source->info(), config);
   }
-  run::RunOutcome outcome = work_on(std::move(source), command, config, work,
-                                    [&] { return begin_results(results, config, calibration); });
+  run::RunOutcome outcome = work_on(
+      std::move(source), command, config, work,
+      [&] { return begin_results(results, config, calibration); }, viewer.get());
   report::RunRecord& record = outcome.record;
   if (calibration) record.figures.push_back(run::focal_length_figure(*calibration));
   std::vector<std::string> errors;
@@ -214,6 +228,7 @@ int execute(const RunCommand& command, Work work) {
     errors = write(outcome, work, results.path());
     if (command.figures.prints_text()) print_outcome(outcome, results.path());
     write_json(record.title, record.figures, command.figures);
+    if (viewer) show_report(*viewer, record);
   } else if (!record.input_error && !record.is_interrupted) {
     throw core::InputError(command.source + ": gives no frame");
   }
@@ -300,6 +315,7 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   if (work == Work::kSlam) add_fov_option(*sub, *command);
   if (work == Work::kSlam) add_odometry_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
+  if (work == Work::kSlam) add_view_options(*sub, command->view);
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;
 }
@@ -324,6 +340,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
           "  samewhere run kitchen --set verify.min_inliers=60  one setting changed\n"
           "  samewhere run flat --prior unique                  no two places look alike: "
           "appearance accepts\n"
+          "  samewhere run walk.mcap --view                     watched in a browser while it "
+          "goes on\n"
           "  samewhere run today --map runs/kitchen/map.sw --localize  localize in a saved "
           "map");
 }

@@ -78,6 +78,10 @@ int guarded(const std::string& name, const std::function<int()>& work) {
 
 }  // namespace
 
+void note(const std::string& message) {
+  std::fputs((printable_line(message, kMaxMessage) + "\n").c_str(), stderr);
+}
+
 int complain(const std::string& name, const std::string& message, int exit_code) {
   // not fmt::print, which throws where stderr is closed
   const std::string line = name + ": " + printable_line(message, kMaxMessage);

@@ -15,6 +15,9 @@ inline constexpr int kInterruptedExit = 130;
 // message holds and however long it is. Returns `exit_code`.
 int complain(const std::string& name, const std::string& message, int exit_code);
 
+// A line on stderr that is no result: where to look, what is waited for.
+void note(const std::string& message);
+
 // All that main() does around the work: warnings go to stderr under the program's name, since
 // results alone go to stdout; OpenCV keeps to one thread, so that the same bits come out on any
 // number of cores. Returns what `work` returns, kBadInput with one line for an InputError,

@@ -145,7 +145,7 @@ Tracking::MaybeTracked Tracking::localize(const core::Frame& frame, const featur
 
 void Tracking::record(const core::Frame& frame, const features::View& view,
                       const MaybeTracked& tracked) {
-  newest_ = {};
+  newest_ = {.features = view.features};
   if (!tracked) {
     const core::FrameStatus status = state_.is_initializing() && !is_led_by_odometry()
                                          ? initialization_.waiting_status(view)
@@ -153,7 +153,10 @@ void Tracking::record(const core::Frame& frame, const features::View& view,
     log_.add({.frame = view.frame, .stamp_s = view.stamp_s, .status = status});
     return;
   }
-  newest_ = {tracked->pose, motion_to(tracked->pose)};
+  newest_.pose = tracked->pose;
+  newest_.last_from_newest = motion_to(tracked->pose);
+  for (const auto& [feature, landmark] : tracked->landmarks)
+    newest_.tracked_features.push_back(feature);
   log_.add(map_.by_odometry(tracked->pose, state_.tracked_since_keyframe()));
   if (!is_map_fixed_ && !is_provisional(*tracked)) passing_.see(frame, log_.newest());
 }

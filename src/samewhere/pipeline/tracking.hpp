@@ -29,6 +29,8 @@ struct NewestFrame {
   std::optional<core::FramePose> pose;  // none: lost
   // Of the body now in that at the frame before; none: one of both has no pose.
   std::optional<core::Rigid3> last_from_newest;
+  std::shared_ptr<const features::Features> features;
+  std::vector<int> tracked_features;  // that show a landmark of the map
 };
 
 // The first stage: poses of the frames, and which of them become keyframes. It uses the map as

@@ -13,6 +13,21 @@ namespace samewhere::report {
 // line alone, so that two runs of the same input differ in nothing else (without_durations).
 std::string report_html(const RunRecord& record);
 
+// The data blocks of the page (page/README.md), as JSON.
+struct PageBlocks {
+  std::string title;  // plain text
+  std::string run = "null";
+  std::string pictures = "[]";
+  std::string durations = "null";
+};
+PageBlocks page_blocks(const RunRecord& record);
+// Of a page that report_html() made. Throws InputError if it is none; `name` is for the message.
+PageBlocks page_blocks_of(const std::string& report_html, const std::string& name);
+
+// The page as a viewer serves it: it may ask the server that it came from, for what the block
+// `live` says.
+std::string served_html(const PageBlocks& blocks, const std::string& live_json);
+
 // The page up to its last block, which holds the durations.
 std::string without_durations(const std::string& report_html);
 

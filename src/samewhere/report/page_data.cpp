@@ -13,6 +13,7 @@
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/packed.hpp>
 #include <samewhere/report/page_data.hpp>
+#include <samewhere/report/page_parts.hpp>
 #include <samewhere/report/page_points.hpp>
 #include <samewhere/report/pairs.hpp>
 #include <samewhere/report/upright.hpp>
@@ -22,84 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kStampStep_s = 1e-4;
-
-Json numbers(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
-// Seconds since the first stamp of the run, in steps.
-class Clock {
- public:
-  explicit Clock(const RunRecord& record) {
-    if (!record.frames.empty()) first_s_ = record.frames.front().pose.stamp_s;
-  }
-  double first_s() const { return first_s_; }
-  std::uint32_t steps(double stamp_s) const {
-    const double steps = std::round((stamp_s - first_s_) / kStampStep_s);
-    return static_cast<std::uint32_t>(std::clamp(steps, 0.0, 4e9));
-  }
-
- private:
-  double first_s_ = 0.0;
-};
-
-Json packed_stamps(const std::vector<std::uint32_t>& steps) {
-  Json array = packed(steps);
-  array["step"] = {kStampStep_s};
-  return array;
-}
-
-void add_position(std::vector<float>& positions, const std::optional<core::Rigid3>& pose) {
-  for (int axis = 0; axis < 3; ++axis)
-    positions.push_back(pose ? static_cast<float>(pose->translation[axis]) : std::nanf(""));
-}
-
-void add_rotation(std::vector<std::int16_t>& rotations, const std::optional<core::Rigid3>& pose) {
-  constexpr double kLargest = 32767.0;
-  const Eigen::Quaterniond q = pose ? pose->rotation : Eigen::Quaterniond::Identity();
-  for (const double value : {q.x(), q.y(), q.z(), q.w()})
-    rotations.push_back(
-        static_cast<std::int16_t>(std::lround(kLargest * std::clamp(value, -1.0, 1.0))));
-}
-
-std::optional<core::Rigid3> finite_pose(const FrameRecord& frame) {
-  const auto& pose = frame.world_from_camera;
-  return pose && core::is_finite(*pose) ? pose : std::nullopt;
-}
-
-Json frames_json(const RunRecord& record, const Clock& clock) {
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> stamps;
-  std::vector<float> positions;
-  std::vector<std::int16_t> rotations;
-  std::vector<std::uint8_t> statuses;
-  std::vector<std::uint16_t> inliers;
-  Json names = Json::array();
-  for (const FrameRecord& frame : record.frames) {
-    indices.push_back(static_cast<std::uint32_t>(frame.pose.frame.index()));
-    stamps.push_back(clock.steps(frame.pose.stamp_s));
-    add_position(positions, finite_pose(frame));
-    add_rotation(rotations, finite_pose(frame));
-    statuses.push_back(static_cast<std::uint8_t>(frame.pose.status));
-    inliers.push_back(static_cast<std::uint16_t>(std::clamp(frame.pose.num_inliers, 0, 65535)));
-    names.push_back(frame.name);
-  }
-  Json packed_rotations = packed(rotations, 4);
-  packed_rotations["step"] = {1.0 / 32767.0};
-  const auto session =
-      record.frames.empty() ? std::uint16_t{0} : record.frames.front().pose.frame.session();
-  return {{"num", record.frames.size()},
-          {"session", session},
-          {"first_stamp_s", clock.first_s()},
-          {"indices", packed(indices)},
-          {"stamps_s", packed_stamps(stamps)},
-          {"positions", packed(positions, 3)},
-          {"rotations", std::move(packed_rotations)},
-          {"statuses", packed(statuses)},
-          {"inliers", packed(inliers)},
-          {"names", std::move(names)}};
-}
-
-Json path_json(const core::Trajectory& trajectory, const Clock& clock) {
+Json path_json(const core::Trajectory& trajectory, const PageClock& clock) {
   std::vector<std::uint32_t> stamps;
   std::vector<float> positions;
   for (const core::StampedPose& pose : trajectory) {
@@ -107,45 +31,14 @@ Json path_json(const core::Trajectory& trajectory, const Clock& clock) {
     stamps.push_back(clock.steps(pose.stamp_s));
     add_position(positions, pose.world_from_camera);
   }
-  return {{"stamps_s", packed_stamps(stamps)}, {"positions", packed(positions, 3)}};
+  return {{"stamps_s", page_stamps(stamps)}, {"positions", packed(positions, 3)}};
 }
 
-Json statuses_json() {
-  Json names = Json::array();
-  for (int i = 0; i <= static_cast<int>(core::kLastStatus); ++i)
-    names.push_back(core::name_of(static_cast<core::FrameStatus>(i)));
-  return names;
-}
-
-Json upright_json(const RunRecord& record) {
+std::vector<core::Rigid3> finite_poses(const RunRecord& record) {
   std::vector<core::Rigid3> poses;
   for (const FrameRecord& frame : record.frames)
     if (const auto pose = finite_pose(frame)) poses.push_back(*pose);
-  const Upright upright = upright_of(poses);
-  return {{"up", numbers(upright.up)}, {"right", numbers(upright.right)}};
-}
-
-Json checks_json(const core::Ledger& ledger) {
-  Json checks = Json::array();
-  for (const FunnelRow& row : funnel(ledger).rows)
-    checks.push_back({{"name", core::name_of(row.stage)},
-                      {"question", question_of(row.stage)},
-                      {"num_arrived", row.num_arrived},
-                      {"num_rejected", row.num_rejected}});
-  return checks;
-}
-
-Json limits_json(const std::vector<ScoreLimit>& limits) {
-  Json array = Json::array();
-  for (const ScoreLimit& limit : limits) {
-    Json entry = {{"score", limit.score},
-                  {"setting", limit.setting},
-                  {"is_minimum", limit.is_minimum},
-                  {"value", limit.value}};
-    if (!limit.share_of.empty()) entry["share_of"] = limit.share_of;
-    array.push_back(std::move(entry));
-  }
-  return array;
+  return poses;
 }
 
 Json covariances_json(const std::vector<PositionCovariance>& covariances) {
@@ -207,8 +100,7 @@ Json candidates_json(const RunRecord& record) {
   const std::map<core::CandidateId, Json> earlier = earlier_verdicts(record.ledger);
   Json candidates = Json::array();
   for (const core::LedgerRow* row : rows) {
-    Json entry = Json::parse(ledger_row_json(*row));
-    entry["id"] = row->candidate.id.index();
+    Json entry = page_candidate(*row);
     if (record.false_loops.contains(row->candidate.id)) entry["is_false"] = true;
     if (const auto found = earlier.find(row->candidate.id); found != earlier.end())
       entry["earlier"] = found->second;
@@ -262,28 +154,28 @@ class Album {
 }  // namespace
 
 std::string page_run_json(const RunRecord& record) {
-  const Clock clock(record);
+  const PageClock clock(record.frames.empty() ? 0.0 : record.frames.front().pose.stamp_s);
   Json run = {{"version", kPageVersion},
               {"title", record.title},
               {"source", record.source},
               {"is_interrupted", record.is_interrupted},
               {"is_scale_unknown", record.is_scale_unknown},
               {"figures", figures_json_of(record.figures)},
-              {"status_names", statuses_json()},
-              {"upright", upright_json(record)},
-              {"frames", frames_json(record, clock)},
+              {"status_names", page_status_names()},
+              {"upright", page_upright(upright_of(finite_poses(record)))},
+              {"frames", page_frames(record.frames, clock)},
               {"odometry", path_json(record.odometry, clock)},
               {"truth", path_json(record.truth, clock)},
               {"covariances", covariances_json(record.covariances)},
               {"points", page_points(record.points, kMaxPagePoints)},
               {"num_candidates", final_rows(record.ledger).size()},
               {"candidates", candidates_json(record)},
-              {"checks", checks_json(record.ledger)},
-              {"limits", limits_json(record.limits)},
+              {"checks", page_checks(record.ledger)},
+              {"limits", page_limits(record.limits)},
               {"num_keyframe_pictures", record.thumbnails.size()},
               {"config_yaml", record.config_yaml}};
   if (record.input_error) run["input_error"] = *record.input_error;
-  return for_script(run);
+  return json_for_script(run);
 }
 
 std::string page_pictures_json(const RunRecord& record) {
@@ -301,7 +193,7 @@ std::string page_pictures_json(const RunRecord& record) {
     pictures.push_back({{"frame", frame.index()},
                         {"session", frame.session()},
                         {"jpeg_base64", base64(record.thumbnails.at(frame))}});
-  return for_script(pictures);
+  return json_for_script(pictures);
 }
 
 std::string page_durations_json(const core::Timings& timings) {
@@ -316,7 +208,7 @@ std::string page_durations_json(const core::Timings& timings) {
                       {"p95_ms", summary.p95_ms},
                       {"processor_ms", timings.processor_ms().at(stage)}});
   }
-  return for_script({{"frames_ms", packed(frames_ms)}, {"stages", std::move(stages)}});
+  return json_for_script({{"frames_ms", packed(frames_ms)}, {"stages", std::move(stages)}});
 }
 
 }  // namespace samewhere::report

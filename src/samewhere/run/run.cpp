@@ -259,6 +259,15 @@ void report_coverage(const RunOdometry& odometry, report::RunRecord& record) {
   if (!record.input_error) record.input_error = odometry.error();
 }
 
+MapPlan watched(MapPlan plan, Watcher* watcher) {
+  if (watcher == nullptr) return plan;
+  plan.watch = [watcher, watch = plan.watch](const auto& map, const pipeline::MapNews& news) {
+    watcher->see_thumbnails(news.thumbnails);
+    if (watch) watch(map, news);
+  };
+  return plan;
+}
+
 // Frames whose match passes the geometric checks but neither sequence nor prior accepts it; none if
 // any loop was accepted.
 std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger, core::Refusal check) {
@@ -297,7 +306,7 @@ std::optional<std::string> note_on(const core::Ledger& ledger, const pipeline::C
 }  // namespace
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Config& given,
-                    const MapPlan& plan, bool is_quiet) {
+                    const MapPlan& plan, bool is_quiet, Watcher* watcher) {
   const auto source = read_ahead(for_slam(std::move(unbuffered), given), given);
   require_slam_input(source->info(), given);
   const core::Truth truth = source->truth();
@@ -309,21 +318,26 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   }
   RunOutcome outcome = start_outcome(config, source->info());
   const bool is_monocular = is_scale_free(source->info());
-  MappedSlam mapped(
-      config, is_monocular ? pipeline::DepthFrom::kMotion : pipeline::DepthFrom::kSensor, plan);
+  MappedSlam mapped(config,
+                    is_monocular ? pipeline::DepthFrom::kMotion : pipeline::DepthFrom::kSensor,
+                    watched(plan, watcher));
   if (odometry) mapped.follow(odometry->path());
   const pipeline::Slam& slam = mapped.slam();
   std::vector<std::string> names;
   LoopCount loops;
   FrameFeed feed(*source, outcome, is_quiet);
+  if (watcher != nullptr) watcher->begin(source->info(), config, !mapped.is_metric());
   while (std::optional<core::Frame> frame = feed.next()) {
-    const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
-    if (odometry) odometry->see(*frame);
-    mapped.feed(*frame);
+    {
+      const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
+      if (odometry) odometry->see(*frame);
+      mapped.feed(*frame);
+    }
     names.push_back(frame->name);
     note_first_pose(slam, outcome.record);
     loops.add(slam.newest_rows());
     feed.note(fmt::format("{}, {}", core::name_of(slam.frames().back().status), loops.text()));
+    if (watcher != nullptr) watcher->see_frame(*frame, names, slam);
   }
 
   outcome.map_error = mapped.finish();

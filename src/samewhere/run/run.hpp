@@ -11,6 +11,7 @@
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/record.hpp>
 #include <samewhere/run/mapped_slam.hpp>
+#include <samewhere/run/watcher.hpp>
 
 namespace samewhere::run {
 
@@ -28,9 +29,9 @@ struct RunOutcome {
 // camera (is_live), or a recording that is played (input.realtime), always the newest frame; how
 // many were dropped is a figure. Stops early at Ctrl-C. Throws InputError if the source lacks the
 // camera file that SLAM needs, or if the known map cannot be used or was made with other settings.
-// is_quiet: without the progress line.
+// is_quiet: without the progress line. `watcher`, if any, outlives the run.
 RunOutcome run_slam(std::unique_ptr<core::Source> source, const pipeline::Config& config,
-                    const MapPlan& plan = {}, bool is_quiet = false);
+                    const MapPlan& plan = {}, bool is_quiet = false, Watcher* watcher = nullptr);
 
 // Recognition alone: every frame is a query against all older ones. Needs neither depth nor camera.
 // `begin`, if any, is called once, when there is a first frame. is_quiet: without the progress

@@ -22,30 +22,50 @@
       this.apply();
       state.watch('selected', (candidate) => this.show(candidate));
       state.watch('theme', () => this.drawDetail());
+      state.onChange('changed', (changed) => this.refresh(changed));
     }
 
-    buildFilters() {
+    // New candidates, verdicts, pictures or positions.
+    refresh(changed) {
+      if (!changed.candidates && !changed.all) return;
+      byId('verdict-chips').replaceChildren();
+      this.buildChips();
+      const check = byId('check-filter').value;
+      this.fillChecks();
+      byId('check-filter').value = check;
+      const { numShown } = this;
+      this.apply(changed.candidates ? Math.max(kFirstRows, numShown) : 0);
+    }
+
+    buildChips() {
       const counts = {};
       for (const candidate of this.run.candidates) counts[candidate.kind] = (counts[candidate.kind] || 0) + 1;
       for (const kind of samewhere.kindNames) {
-        const chip = element('button', { class: 'chip', 'aria-pressed': true, 'data-kind': kind, 'data-term': kind, onclick: () => this.toggle(kind, chip) },
+        const chip = element('button', { class: 'chip', 'aria-pressed': this.kinds.has(kind) ? 'true' : 'false', 'data-kind': kind, 'data-term': kind, onclick: () => this.toggle(kind, chip) },
           samewhere.lineSample(kind), `${kind} `, element('b', {}, number(counts[kind] || 0)));
         chip.disabled = !counts[kind];
         byId('verdict-chips').append(chip);
       }
+    }
+
+    buildFilters() {
+      this.buildChips();
       this.fillSelects();
       for (const id of ['check-filter', 'order']) byId(id).addEventListener('change', () => this.apply());
       byId('score-filter').addEventListener('change', () => { byId('score-minimum').value = 0; this.apply(); });
       byId('score-minimum').addEventListener('input', () => this.apply());
     }
 
-    fillSelects() {
+    fillChecks() {
       const ofCheck = {};
       for (const candidate of this.run.candidates) {
         if (candidate.verdict !== 'LOOP') ofCheck[candidate.stage] = (ofCheck[candidate.stage] || 0) + 1;
       }
-      byId('check-filter').append(element('option', { value: '' }, 'all'),
+      byId('check-filter').replaceChildren(element('option', { value: '' }, 'all'),
         ...Object.entries(ofCheck).map(([check, count]) => element('option', { value: check }, `${check} (${count})`)));
+    }
+    fillSelects() {
+      this.fillChecks();
       byId('order').append(...Object.keys(orders).map((name) => element('option', {}, name)));
       byId('score-filter').append(...Object.keys(scores).map((name) => element('option', {}, name)));
     }
@@ -69,7 +89,8 @@
       return score === 'similarity' ? value : Math.round(value);
     }
 
-    apply() {
+    // numRows: of the list; 0: it stays as it is.
+    apply(numRows = kFirstRows) {
       const check = byId('check-filter').value;
       const score = scores[byId('score-filter').value];
       const minimum = this.minimum(score);
@@ -79,9 +100,9 @@
         && (minimum <= 0 || (candidate.scores[score] || 0) >= minimum));
       found.sort(orders[byId('order').value]);
       this.found = found;
-      this.numShown = kFirstRows;
       this.tellCount();
-      this.fillList();
+      if (numRows) this.numShown = numRows;
+      if (numRows) this.fillList();
       this.state.set('candidates', found);
     }
 

@@ -9,10 +9,7 @@
     }
   };
 
-  function readRun() {
-    const block = (id) => JSON.parse(byId(id).textContent);
-    return new samewhere.Run(block('run'), block('pictures'), block('durations'));
-  }
+  const block = (id) => JSON.parse(byId(id).textContent);
 
   // A part that the map has, to show or hide.
   function addLayer(state, name, text, isShown) {
@@ -23,7 +20,7 @@
     byId('layers').append(element('label', {}, box, name === 'points' ? null : sample, text));
   }
   function addLayers(run, state) {
-    if (run.points.positions.length) addLayer(state, 'points', 'landmarks', true);
+    if (run.points.positions.length || run.is_live) addLayer(state, 'points', 'landmarks', true);
     if (run.odometry.times.length) addLayer(state, 'odometry', 'odometry alone', true);
     if (run.truth.times.length) addLayer(state, 'truth', 'ground truth', true);
     if (run.covariances.length) addLayer(state, 'ellipses', 'covariance', false);
@@ -31,8 +28,8 @@
 
   function startHeights(run, state) {
     const heights = Array.from(run.points.positions.filter((_, i) => i % 3 === 2)).sort((a, b) => a - b);
-    byId('height-section').hidden = heights.length === 0;
-    if (!heights.length) return;
+    byId('height-section').hidden = heights.length === 0 || Boolean(run.is_live);
+    if (byId('height-section').hidden) return state.set('heights', [-1e6, 1e6]);
     const [low, high] = [0, heights.length - 1].map((i) => heights[i]);
     const sliders = [byId('height-low'), byId('height-high')];
     sliders.forEach((slider, i) => Object.assign(slider, { min: low, max: high, step: (high - low) / 200 || 1, value: i ? high : low }));
@@ -54,6 +51,7 @@
     const showLegend = () => samewhere.showLegend(run, state.get('colourBy'));
     state.watch('colourBy', (mode) => { select.value = mode; showLegend(); });
     state.watch('theme', showLegend);
+    state.onChange('changed', showLegend);
     return () => {
       select.selectedIndex = (select.selectedIndex + 1) % modes.length;
       state.set('colourBy', select.value);
@@ -96,12 +94,13 @@
     });
   }
 
-  function start() {
-    const run = readRun();
+  function show(run) {
     const state = new samewhere.State({ row: 0, selected: null, candidates: [], colourBy: 'time', theme: 'light', layers: {}, heights: null, isFollowing: false, isGrowing: false });
     const switchTheme = samewhere.startTheme([state]);
     const candidates = new samewhere.Candidates(run, state);
-    samewhere.showSummary(run, (check) => { samewhere.openTab('candidates'); candidates.showCheck(check); });
+    const openCheck = (check) => { samewhere.openTab('candidates'); candidates.showCheck(check); };
+    samewhere.showSummary(run, openCheck);
+    state.onChange('changed', () => samewhere.showSummary(run, openCheck));
     const tabs = document.querySelectorAll('[role=tab]');
     tabs.forEach((tab) => tab.addEventListener('click', () => samewhere.openTab(tab.getAttribute('aria-controls'))));
     addLayers(run, state);
@@ -130,6 +129,12 @@
     if (run.num) state.set('row', run.num - 1);
     Object.assign(samewhere, { run, state, map, plots, timeline, candidates });
     document.documentElement.dataset.ready = Math.round(performance.now()); // ms since the page was opened
+  }
+  function start() {
+    const live = block('live');
+    if (live && live.mode === 'live') return samewhere.followRun(live, show);
+    show(new samewhere.Run(block('run'), block('pictures'), block('durations')));
+    if (live) samewhere.stayOpen(live);
   }
   document.addEventListener('DOMContentLoaded', start);
 })();

@@ -16,6 +16,7 @@
         this.shown = candidates.filter((candidate) => candidate.hasLine);
         this.render();
       });
+      state.onChange('changed', () => { if (!this.scale) this.fit(); this.render(); });
       this.listen();
       new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
       this.resize();
@@ -49,7 +50,7 @@
       }, { passive: false });
       this.canvas.addEventListener('pointermove', (event) => {
         if (!event.buttons) return;
-        const scale = this.pixelsPerUnit();
+        const scale = this.scale = this.pixelsPerUnit();
         this.centre = [this.centre[0] - event.movementX / scale, this.centre[1] + event.movementY / scale];
         this.render();
       });

@@ -48,13 +48,14 @@
       if (run.hasOdometry && !run.hasTruth) {
         this.add('correction', `Correction by loop closing, ${run.unit}`, () => [this.line('correction', run.times, run.corrections, 'path')]);
       }
-      if (run.candidates.length) this.add('candidates', 'Inliers of loop candidates', () => this.scatter(), this.inlierLimit());
+      if (run.candidates.length || run.is_live) this.add('candidates', 'Inliers of loop candidates', () => this.scatter(), this.inlierLimit());
       if (run.durations_ms.length === run.num) {
         this.add('time', 'Time per frame, ms', () => [this.line('time', run.times, run.durations_ms, 'path')]);
       }
       state.watch('theme', () => this.build());
       state.watch('candidates', () => this.refresh(['candidates']));
       state.watch('row', () => this.showCursor());
+      state.onChange('changed', () => this.grow());
       byId('zoom-in').addEventListener('click', () => this.zoom(0.5));
       byId('zoom-out').addEventListener('click', () => this.zoom(2));
       byId('zoom-all').addEventListener('click', () => this.setSpan(this.whole));
@@ -156,6 +157,13 @@
         plot.chart.update('none');
       }
       this.showCursor();
+    }
+    // The run has become longer; a part of it that is shown stays.
+    grow() {
+      const isWhole = this.span[0] === this.whole[0] && this.span[1] === this.whole[1];
+      this.whole = [0, Math.max(0.5, this.run.times[this.run.num - 1])];
+      if (isWhole) this.span = this.whole;
+      this.refresh();
     }
     setSpan(span) {
       const width = Math.max(0.5, Math.min(span[1] - span[0], this.whole[1] - this.whole[0]));

@@ -2,6 +2,7 @@
 // right and y up in the view from above, and z is the height; the first pose is at the origin.
 (function () {
   function unpacked(array) {
+    if (ArrayBuffer.isView(array)) return array;
     const text = atob(array.base64);
     const bytes = new Uint8Array(text.length);
     for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);

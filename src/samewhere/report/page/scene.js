@@ -4,7 +4,13 @@
   const kClickPixels = 10; // a click so near to a line is meant for it
   const kMaxSlowPoints = 60000; // landmarks drawn where there is no graphics card
 
-  function sprite(mark, colour, ground) {
+  const sprites = new Map(); // made once, for any number of updates
+  function sprite(...look) {
+    const key = look.join();
+    if (!sprites.has(key)) sprites.set(key, makeSprite(...look));
+    return sprites.get(key);
+  }
+  function makeSprite(mark, colour, ground) {
     const canvas = element('canvas', { width: 64, height: 64 });
     const pen = canvas.getContext('2d');
     pen.beginPath();
@@ -96,6 +102,7 @@
       this.controls.screenSpacePanning = true;
       this.controls.maxPolarAngle = Math.PI * 0.98;
       this.controls.addEventListener('change', () => this.render());
+      this.controls.addEventListener('start', () => { this.isMoved = true; });
       this.clip = [new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Plane(new THREE.Vector3(0, 0, -1), 0)];
       this.pictureTexture = null;
       this.shown = [];
@@ -117,6 +124,7 @@
       this.state.onChange('isGrowing', () => this.showGrowth());
       this.state.onChange('heights', (heights) => this.cut(heights));
       this.state.onChange('layers', () => this.showLayers());
+      this.state.onChange('changed', (changed) => this.grow(changed));
       this.pickOnClick();
     }
 
@@ -130,6 +138,7 @@
       if (this[name]) {
         this.scene.remove(this[name]);
         if (this[name].geometry) this[name].geometry.dispose();
+        if (this[name].material) this[name].material.dispose(); // textures are shared
       }
       this[name] = object;
       if (object) this.scene.add(object);
@@ -147,6 +156,23 @@
       this.showCamera();
       this.showLayers();
       this.render();
+    }
+
+    // The run has gone on.
+    grow(changed) {
+      if (changed.points || changed.all) {
+        const before = this.radius;
+        this.measureRoom();
+        if (Math.abs(this.radius / before - 1) > 0.05) {
+          this.buildGround();
+          if (!this.isMoved && !this.state.get('isFollowing')) this.look('whole', false);
+        }
+      }
+      if (changed.points) this.buildPoints();
+      this.buildPath();
+      if (changed.candidates || changed.all) this.showCandidates(this.state.get('candidates'));
+      this.showCamera();
+      this.showLayers();
     }
 
     buildPoints() {
@@ -350,6 +376,7 @@
 
     // Views: the whole map from the side, or from above.
     look(name, isMoving = true) {
+      this.isMoved = name !== 'whole';
       const elevation = name === 'above' ? Math.PI / 2 - 1e-4 : 0.9;
       const azimuth = name === 'above' ? -Math.PI / 2 : -Math.PI / 2 - 0.3;
       const towards = new THREE.Vector3(Math.cos(azimuth) * Math.cos(elevation), Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation));

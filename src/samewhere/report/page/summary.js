@@ -22,6 +22,7 @@
   function showHeadline(run) {
     const found = headline.map((name) => run.figures.find((figure) => figure.name === name)).filter(Boolean);
     const shown = (found.length ? found : run.figures.filter((figure) => figure.value.length < 20)).slice(0, 4);
+    byId('headline').replaceChildren();
     for (const figure of shown) {
       const value = figure.value.replace(/ \(.*\)$/, '');
       byId('headline').append(element('div', { title: `${figure.name}: ${figure.value}` }, element('dt', {}, figure.name.replace(' (median, max)', '')), element('dd', {}, value)));
@@ -29,6 +30,7 @@
   }
 
   function showWarnings(run) {
+    byId('warnings').replaceChildren();
     const warn = (text) => byId('warnings').append(element('p', { class: 'warning' }, text));
     if (run.is_interrupted) warn('The run was interrupted; the report covers the frames up to there.');
     if (run.input_error) warn(`The input failed and the run ended there: ${run.input_error}`);
@@ -52,15 +54,15 @@
     for (const kind of ['ambiguous', 'accepted', ...(counts('false') ? ['false'] : [])]) {
       rows.push(element('div', { class: 'check' }, element('span', { class: 'name' }, samewhere.term(kind)), element('span', { class: 'bar' }, bar(kind, counts(kind))), element('span', { class: 'numbers' }, element('b', {}, number(counts(kind))))));
     }
-    byId('funnel').append(...(total ? rows : [element('p', {}, 'The run has no loop candidates.')]));
+    byId('funnel').replaceChildren(...(total ? rows : [element('p', {}, 'The run has no loop candidates.')]));
   }
 
   function showTables(run) {
-    byId('metrics').append(...run.figures.map((figure) => element('tr', {}, element('th', {}, figure.name), element('td', {}, figure.value))));
+    byId('metrics').replaceChildren(...run.figures.map((figure) => element('tr', {}, element('th', {}, figure.name), element('td', {}, figure.value))));
     byId('stages-title').hidden = !run.stages.length;
     if (run.stages.length) {
       const numFrames = run.num || 1;
-      byId('stages').append(element('tr', {}, ...['stage', 'calls', 'median, ms', '95 %, ms', 'CPU, ms per frame'].map((name) => element('th', {}, name))),
+      byId('stages').replaceChildren(element('tr', {}, ...['stage', 'calls', 'median, ms', '95 %, ms', 'CPU, ms per frame'].map((name) => element('th', {}, name))),
         ...[...run.stages].sort((a, b) => b.processor_ms - a.processor_ms).map((stage) => element('tr', {}, element('th', {}, stage.name),
           ...[stage.count, stage.median_ms, stage.p95_ms, stage.processor_ms / numFrames].map((value) => element('td', {}, number(value))))));
     }

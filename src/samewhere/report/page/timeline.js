@@ -12,6 +12,10 @@
       byId('play').addEventListener('click', () => this.togglePlay());
       state.watch('row', (row) => this.show(row));
       state.watch('theme', () => this.drawStrip());
+      state.onChange('changed', () => {
+        this.slider.max = Math.max(0, run.num - 1);
+        this.drawStrip();
+      });
       new ResizeObserver(() => this.drawStrip()).observe(byId('status-strip'));
     }
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include <httplib.h>
+
+namespace samewhere::view {
+
+// One connection of a client, with limits that the HTTP library lacks: the head of the request
+// comes within kMaxHead_bytes and kRequestLimit_s, and what is written is read at
+// kSlowestReader_bytes_s or faster. Otherwise it counts as broken. Closes the socket.
+class Connection : public httplib::Stream {
+ public:
+  explicit Connection(int socket);
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() override;
+
+  // False: refused, and the client told so.
+  bool read_head();
+  // An answer without content; for what is refused.
+  void refuse(int status);
+
+  // As in httplib::Stream. Some belong to other versions of it.
+  virtual bool is_readable() const;
+  virtual bool wait_readable() const { return true; }
+  virtual bool wait_writable() const { return is_writable(); }
+  virtual bool is_writable() const;
+  virtual time_t duration() const { return 0; }
+  ssize_t read(char* bytes, size_t size) override;
+  ssize_t write(const char* bytes, size_t size) override;
+  void get_remote_ip_and_port(std::string& ip, int& port) const override;
+  void get_local_ip_and_port(std::string& ip, int& port) const override;
+  socket_t socket() const override { return socket_; }
+
+ private:
+  bool wait_for(short events, double until_s) const;
+
+  int socket_;
+  double begin_s_;
+  std::string received_;  // and not yet read
+};
+
+}  // namespace samewhere::view
