@@ -23,6 +23,7 @@ void add_train_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_dds_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 void add_doctor_command(CLI::App& app);
 
 }  // namespace samewhere::app

@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   add_info_command(app);
   add_convert_command(app);
   add_twin_command(app);
+  add_view_command(app);
   add_ledger_command(app);
   add_map_command(app);
   add_optimize_command(app);

@@ -22,17 +22,21 @@ std::string token_error(const std::string& token) {
 
 }  // namespace
 
+CLI::Option* add_token_option(CLI::App& command, std::string& token) {
+  return command
+      .add_option("--view-token", token,
+                  "secret that the page is asked for; without it, where other machines reach the "
+                  "page, a random one")
+      ->check(token_error);
+}
+
 void add_view_options(CLI::App& command, ViewOptions& options) {
   CLI::Option* view = command.add_flag(
       "--view{any}", options.place,
       "show the run in a browser while it goes on; --view=PORT or --view=ADDRESS:PORT, by default "
       "port 8080 of this machine, or a free one. The results are the same. The program ends when "
       "the page is closed");
-  command
-      .add_option("--view-token", options.token,
-                  "secret that the page is asked for; without it other machines get a random one")
-      ->needs(view)
-      ->check(token_error);
+  add_token_option(command, options.token)->needs(view);
 }
 
 void print_view_url(const std::string& url) { core::note("look at " + url); }

@@ -15,6 +15,8 @@ struct ViewOptions {
   std::string token;
 };
 
+// --view-token.
+CLI::Option* add_token_option(CLI::App& command, std::string& token);
 void add_view_options(CLI::App& command, ViewOptions& options);
 
 // Tells on stderr where to look.

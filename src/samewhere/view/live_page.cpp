@@ -63,10 +63,11 @@ std::string image_json(const LiveImage& image) {
 }  // namespace
 
 LivePage::LivePage(const core::SourceInfo& source, const pipeline::Config& config,
-                   bool is_scale_unknown)
+                   bool is_scale_unknown, bool may_wait)
     : start_({{"title", source.name},
               {"source", config.source},
               {"is_scale_unknown", is_scale_unknown},
+              {"may_wait", may_wait},
               {"num_expected", source.num_frames},
               {"status_names", report::page_status_names()},
               {"limits", report::page_limits(run::score_limits(config.verify))},

@@ -53,7 +53,9 @@ struct LiveCursor {
 // What the pages are told of a run, as JSON of page/README.md. Single-threaded.
 class LivePage {
  public:
-  LivePage(const core::SourceInfo& source, const pipeline::Config& config, bool is_scale_unknown);
+  // may_wait: pages may let the run wait.
+  LivePage(const core::SourceInfo& source, const pipeline::Config& config, bool is_scale_unknown,
+           bool may_wait);
 
   void add(LiveNews news);
   // Server-sent events with all that the cursor lacks.

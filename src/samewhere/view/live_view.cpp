@@ -36,32 +36,28 @@ std::string token_for(const Place& place, const std::string& token) {
 }  // namespace
 
 LiveView::LiveView(const Place& place, const std::string& token)
-    : server_(std::make_unique<Server>(place, token_for(place, token), routes())) {}
+    : live_html_(std::make_shared<const std::string>(
+          report::served_html({.title = "samewhere"}, R"({"mode":"live"})"))),
+      server_(std::make_unique<Server>(place, token_for(place, token), routes())) {}
 
 LiveView::~LiveView() = default;
 
 Routes LiveView::routes() {
   Routes routes;
-  routes.pages["/"] = [this] { return html(); };
+  routes.pages["/"] = [this] {
+    const Page report = report_.get();
+    return report ? report : live_html_;
+  };
   routes.streams["/events"] = [this] { return open_stream(); };
   routes.actions["/control"] = [this](const std::string& body) { return control(body); };
   return routes;
-}
-
-std::string LiveView::live_json() const {
-  return may_wait_.get() ? R"({"mode":"live","may_wait":true})" : R"({"mode":"live"})";
-}
-
-std::string LiveView::html() const {
-  if (const auto report = report_.get()) return *report;
-  return report::served_html({.title = "samewhere"}, live_json());
 }
 
 void LiveView::begin(const core::SourceInfo& source, const pipeline::Config& config,
                      bool is_scale_unknown) {
   may_wait_.set(!source.is_live && !config.input.realtime);
   page_.with([&](auto& page) {
-    page.emplace(source, config, is_scale_unknown);
+    page.emplace(source, config, is_scale_unknown, may_wait_.get());
     return 0;
   });
 }

@@ -39,8 +39,6 @@ class LiveView : public run::Watcher {
 
  private:
   Routes routes();
-  std::string html() const;
-  std::string live_json() const;
   NextEvents open_stream();
   std::string next_events(LiveCursor& cursor);
   Answer control(const std::string& body);
@@ -51,7 +49,8 @@ class LiveView : public run::Watcher {
 
   core::Guarded<LiveNews> news_;
   core::Guarded<std::optional<LivePage>> page_;
-  core::Guarded<std::shared_ptr<const std::string>> report_;  // HTML, once the run has ended
+  Page live_html_;
+  core::Guarded<Page> report_;    // once the run has ended
   core::Guarded<bool> may_wait_;  // a recording, as fast as it is asked for
   Pace pace_;
   // of the run's thread

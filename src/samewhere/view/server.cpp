@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/view/connection.hpp>
+#include <samewhere/view/request_head.hpp>
 #include <samewhere/view/server.hpp>
 
 namespace samewhere::view {
@@ -17,6 +19,7 @@ constexpr std::size_t kMaxWaiting = 64;       // connections
 constexpr double kTurn_s = 0.1;               // between two looks of a stream
 constexpr int kTurnsOfSilence = 10;           // then a comment shows whether the client is there
 constexpr int kStartTurns = 2000;
+constexpr std::size_t kPart_bytes = 1'000'000;
 constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kText = "text/plain; charset=utf-8";
 
@@ -52,6 +55,14 @@ class NoQueue : public httplib::TaskQueue {
 void answer_text(httplib::Response& response, int status, const std::string& text) {
   response.status = status;
   response.set_content(text, kText);
+}
+
+// In parts, without a copy.
+void answer_page(httplib::Response& response, const Page& page) {
+  response.set_content_provider(
+      page->size(), kHtml, [page](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        return sink.write(page->data() + offset, std::min(length, kPart_bytes));
+      });
 }
 
 // Runs `work`; bad input becomes an answer.
@@ -137,12 +148,12 @@ class Server::Http : private httplib::Server {
   }
 
   void add_routes() {
-    set_payload_max_length(64 * 1024);
+    set_payload_max_length(kMaxBody_bytes);
     set_pre_routing_handler(
         [this](const Request& request, Response& response) { return check(request, response); });
     for (const auto& [path, page] : routes_.pages)
       Get(path, [make = page](const Request&, Response& response) {
-        guarded(response, [&] { response.set_content(make(), kHtml); });
+        guarded(response, [&] { answer_page(response, make()); });
       });
     for (const auto& [path, open] : routes_.streams)
       Get(path, [this, make = open](const Request&, Response& response) {

@@ -20,11 +20,14 @@ struct Answer {
   std::string text;
 };
 
+// HTML, shared by all that read it.
+using Page = std::shared_ptr<const std::string>;
+
 // What is served: these paths and nothing else, in particular no files by name. Called in threads
 // of the server, several at a time. What they throw as InputError becomes status 400 with its
 // message.
 struct Routes {
-  std::map<std::string, std::function<std::string()>> pages;  // HTML
+  std::map<std::string, std::function<Page()>> pages;
   std::map<std::string, std::function<NextEvents()>> streams;
   // Given the body of the request, which is JSON; returns JSON.
   std::map<std::string, std::function<Answer(const std::string& body)>> actions;

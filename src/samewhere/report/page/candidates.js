@@ -203,7 +203,8 @@
       this.candidate = candidate;
       this.shown = shownMatches;
       this.canvas = element('canvas', { class: 'pair', role: 'img', title: 'enlarge', 'aria-label': `frame ${candidate.query} and frame ${candidate.matchName}`, onclick: () => this.enlarge() });
-      this.nodes = [this.heading(close), this.canvas, this.captions(), this.toggles(), ...this.sentences(), this.table()];
+      this.nodes = [this.heading(close), this.canvas, this.captions(), this.toggles(), ...this.sentences(),
+        ...(samewhere.overrideNodes ? samewhere.overrideNodes(candidate) : []), this.table()];
     }
 
     heading(close) {

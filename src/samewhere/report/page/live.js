@@ -32,8 +32,7 @@
   }
 
   class Live {
-    constructor(options, show) {
-      this.options = options;
+    constructor(show) {
       this.show = show; // puts the page together
       this.changed = {};
       this.buildBar();
@@ -52,6 +51,7 @@
       this.pictureList = [];
       this.candidateOf = new Map();
       byId('title').textContent = start.title;
+      byId('live-pace').hidden = !start.may_wait;
     }
     frames(event) {
       const { frames } = this.data;
@@ -151,6 +151,7 @@
     drawImage() {
       const isShown = Boolean(this.newest) && this.isAtEnd();
       byId('view').classList.toggle('live', isShown);
+      if (isShown && this.caption) this.showCaption();
       if (!isShown || this.drawn === this.newest) return;
       const { newest } = this;
       this.drawn = newest;
@@ -175,18 +176,20 @@
       draw(false, samewhere.css('idle'), 1);
       draw(true, samewhere.css('inlier-match'), 2.5);
       const numTracked = areTracked.reduce((sum, value) => sum + value, 0);
+      Object.assign(canvas.dataset, { frame, tracked: numTracked });
+      this.caption = `frame ${frame} · ${number(numTracked)} of ${number(areTracked.length)} features tracked`;
+      if (this.isAtEnd()) this.showCaption();
+    }
+    showCaption() {
       byId('view').hidden = false;
+      byId('view-caption').textContent = this.caption;
       samewhere.timeline.pictureRow = -1; // it shows the keyframe's again when the slider is moved
-      byId('view-caption').textContent = `frame ${frame} · ${number(numTracked)} of ${number(areTracked.length)} features tracked`;
-      canvas.dataset.frame = frame;
-      canvas.dataset.tracked = numTracked;
     }
 
     // --- What the run is asked for.
     buildBar() {
       byId('live-bar').hidden = false;
       const wish = (value) => samewhere.post('/control', value).catch((error) => this.tell(error.message));
-      byId('live-pace').hidden = !this.options.may_wait;
       byId('live-pause').addEventListener('click', () => wish({ is_paused: byId('live-pause').getAttribute('aria-pressed') !== 'true' }));
       byId('live-step').addEventListener('click', () => wish({ step: true }));
       byId('live-speed').append(...[['0', 'as fast as possible'], ['1', 'as recorded'], ['0.5', '1/2'], ['0.25', '1/4'], ['0.1', '1/10']].map(([value, text]) => element('option', { value }, text)));
@@ -195,11 +198,34 @@
     tell(text) { byId('live-note').textContent = text; }
   }
 
-  samewhere.followRun = function (options, show) { samewhere.live = new Live(options, show); };
+  samewhere.followRun = function (show) { samewhere.live = new Live(show); };
+
+  // Where the server can override a verdict: what the details of a candidate have for it.
+  function overrideNodes(path, candidate) {
+    const isAccepted = candidate.kind === 'accepted';
+    const note = element('p', { class: 'note', role: 'status' });
+    const button = element('button', { class: 'override', onclick: async () => {
+      button.disabled = true;
+      note.textContent = 'The map is corrected …';
+      try {
+        await samewhere.post(path, { candidate: candidate.id, as: isAccepted ? 'reject' : 'force' });
+        location.hash = `candidate-${candidate.id}`;
+        location.reload();
+      } catch (error) {
+        note.textContent = error.message;
+        button.disabled = false;
+      }
+    } }, isAccepted ? 'Reject by hand' : 'Accept by hand');
+    return [element('p', { class: 'by-hand' }, button), note];
+  }
 
   // A page of a finished run: the server goes on while it is open.
   samewhere.stayOpen = function (options) {
     document.documentElement.dataset.mode = options.mode;
+    if (options.override) samewhere.overrideNodes = (candidate) => overrideNodes(options.override, candidate);
+    const id = Number((location.hash.match(/^#candidate-(\d+)$/) || [])[1]);
+    const shown = samewhere.run.candidates.find((candidate) => candidate.id === id);
+    if (shown) samewhere.state.set('selected', shown);
     const source = new EventSource(ask('/events'));
     source.onerror = () => { if (source.readyState === EventSource.CLOSED) source.close(); };
   };

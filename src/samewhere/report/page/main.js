@@ -68,8 +68,12 @@
     const webGL = samewhere.probeWebGL();
     const is3d = webGL !== null;
     const map = is3d ? new samewhere.Scene(run, state, canvas, webGL) : new samewhere.Plan(run, state, canvas);
-    const grid = is3d && !run.is_scale_unknown ? `Grid: ${samewhere.number(map.gridStep)} m. ` : '';
-    byId('scene-note').textContent = is3d ? `${map.note || ''}${grid}Drag to turn, wheel to zoom, right button to move. Click a line.` : 'This browser has no WebGL: the map is shown from above. Drag to move, wheel to zoom, click a line.';
+    const showNote = () => {
+      const grid = is3d && !run.is_scale_unknown ? `Grid: ${samewhere.number(map.gridStep)} m. ` : '';
+      byId('scene-note').textContent = is3d ? `${map.note || ''}${grid}Drag to turn, wheel to zoom, right button to move. Click a line.` : 'This browser has no WebGL: the map is shown from above. Drag to move, wheel to zoom, click a line.';
+    };
+    showNote();
+    state.onChange('changed', showNote);
     byId('view-reset').addEventListener('click', () => map.look('whole'));
     byId('view-top').addEventListener('click', () => map.look('above'));
     byId('view-follow').addEventListener('click', () => {
@@ -132,7 +136,7 @@
   }
   function start() {
     const live = block('live');
-    if (live && live.mode === 'live') return samewhere.followRun(live, show);
+    if (live && live.mode === 'live') return samewhere.followRun(show);
     show(new samewhere.Run(block('run'), block('pictures'), block('durations')));
     if (live) samewhere.stayOpen(live);
   }

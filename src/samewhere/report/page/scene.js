@@ -161,9 +161,8 @@
     // The run has gone on.
     grow(changed) {
       if (changed.points || changed.all) {
-        const before = this.radius;
         this.measureRoom();
-        if (Math.abs(this.radius / before - 1) > 0.05) {
+        if (Math.abs(this.radius / this.radiusOfGround - 1) > 0.05) {
           this.buildGround();
           if (!this.isMoved && !this.state.get('isFollowing')) this.look('whole', false);
         }
@@ -202,6 +201,7 @@
       grid.material.opacity = 0.5;
       grid.material.depthWrite = false;
       this.gridStep = step;
+      this.radiusOfGround = this.radius;
       this.replace('ground', grid);
     }
 
