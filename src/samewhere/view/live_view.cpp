@@ -16,7 +16,7 @@ namespace {
 constexpr double kCopyPeriod_s = 0.15;     // of new frames and the image
 constexpr double kFullCopyPeriod_s = 1.0;  // of all poses and the map
 constexpr double kFullCopyShare = 0.01;    // of the run's thread, at most
-constexpr double kReload_s = 5.0;          // for a page that is opened once more
+constexpr double kReload_s = 10.0;         // for a page that is opened once more
 constexpr double kLookForPages_s = 0.1;
 
 double steady_s() {

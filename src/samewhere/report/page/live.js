@@ -223,10 +223,13 @@
   samewhere.stayOpen = function (options) {
     document.documentElement.dataset.mode = options.mode;
     if (options.override) samewhere.overrideNodes = (candidate) => overrideNodes(options.override, candidate);
+    const source = new EventSource(ask('/events'));
+    source.onerror = () => { if (source.readyState === EventSource.CLOSED) source.close(); };
+  };
+  // After a verdict was overridden, its candidate is shown again.
+  samewhere.selectByAddress = function () {
     const id = Number((location.hash.match(/^#candidate-(\d+)$/) || [])[1]);
     const shown = samewhere.run.candidates.find((candidate) => candidate.id === id);
     if (shown) samewhere.state.set('selected', shown);
-    const source = new EventSource(ask('/events'));
-    source.onerror = () => { if (source.readyState === EventSource.CLOSED) source.close(); };
   };
 })();

@@ -137,8 +137,9 @@
   function start() {
     const live = block('live');
     if (live && live.mode === 'live') return samewhere.followRun(show);
+    if (live) samewhere.stayOpen(live); // first: the rest takes its time
     show(new samewhere.Run(block('run'), block('pictures'), block('durations')));
-    if (live) samewhere.stayOpen(live);
+    if (live) samewhere.selectByAddress();
   }
   document.addEventListener('DOMContentLoaded', start);
 })();
