@@ -1,7 +1,5 @@
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include <samewhere/core/errors.hpp>
 #include <samewhere/report/html.hpp>
 #include <samewhere/report/html_text.hpp>
@@ -12,20 +10,6 @@ namespace samewhere::report {
 namespace {
 
 constexpr std::string_view kDurationsBlock = "<script type=\"application/json\" id=\"durations\">";
-
-// The text between `begin` and `end`, behind `from`.
-std::string between(const std::string& text, std::string_view begin, std::string_view end,
-                    const std::string& name) {
-  const std::size_t at = text.find(begin);
-  const std::size_t until = at == std::string::npos ? at : text.find(end, at + begin.size());
-  if (until == std::string::npos)
-    throw core::InputError(name + ": is no report page; expected one of `samewhere run`");
-  return text.substr(at + begin.size(), until - at - begin.size());
-}
-
-std::string block_of(const std::string& html, const std::string& id, const std::string& name) {
-  return between(html, "<script type=\"application/json\" id=\"" + id + "\">", "</script>", name);
-}
 
 std::string filled_page(std::string_view page, const PageBlocks& blocks,
                         const std::string& live_json) {
@@ -41,15 +25,6 @@ std::string filled_page(std::string_view page, const PageBlocks& blocks,
 PageBlocks page_blocks(const RunRecord& record) {
   return {record.title, page_run_json(record), page_pictures_json(record),
           page_durations_json(record.timings)};
-}
-
-PageBlocks page_blocks_of(const std::string& report_html, const std::string& name) {
-  const std::string run = block_of(report_html, "run", name);
-  const auto json = nlohmann::json::parse(run, nullptr, false);
-  if (!json.is_object() || !json.contains("title") || !json["title"].is_string())
-    throw core::InputError(name + ": its data is damaged; expected a page of `samewhere run`");
-  return {json["title"].get<std::string>(), run, block_of(report_html, "pictures", name),
-          block_of(report_html, "durations", name)};
 }
 
 std::string report_html(const RunRecord& record) {

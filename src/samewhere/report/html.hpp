@@ -21,8 +21,6 @@ struct PageBlocks {
   std::string durations = "null";
 };
 PageBlocks page_blocks(const RunRecord& record);
-// Of a page that report_html() made. Throws InputError if it is none; `name` is for the message.
-PageBlocks page_blocks_of(const std::string& report_html, const std::string& name);
 
 // The page as a viewer serves it: it may ask the server that it came from, for what the block
 // `live` says.

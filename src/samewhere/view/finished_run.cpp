@@ -8,6 +8,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/report/compare.hpp>
 #include <samewhere/report/loops_read.hpp>
 #include <samewhere/report/page_parts.hpp>
 #include <samewhere/report/page_points.hpp>
@@ -40,6 +41,7 @@ bool take_verdicts(Json& candidates, const core::Ledger& ledger) {
         {{"verdict", entry["verdict"]}, {"stage", entry["stage"]}, {"reason", entry["reason"]}});
     now["earlier"] = std::move(earlier);
     if (entry.contains("matches")) now["matches"] = entry["matches"];
+    if (entry.contains("is_false") && now["verdict"] == "LOOP") now["is_false"] = true;
     entry = std::move(now);
   }
   return has_changed;
@@ -91,10 +93,13 @@ bool may_override(const std::filesystem::path& folder) {
 
 report::PageBlocks page_of_run(const std::filesystem::path& folder) {
   const std::filesystem::path page = folder / "report.html";
-  report::PageBlocks blocks = report::page_blocks_of(core::read_file(page), page.string());
+  report::ComparedRun stored = report::read_report_html(core::read_file(page), "", page.string());
+  report::PageBlocks blocks{"", std::move(stored.run_json), std::move(stored.pictures_json),
+                            std::move(stored.durations_json)};
   const core::Ledger ledger = run::ledger_of_run(folder);
   try {
     Json run = Json::parse(blocks.run);
+    blocks.title = run.at("title").get<std::string>();
     if (!take_verdicts(run.at("candidates"), ledger)) return blocks;
     run["checks"] = report::page_checks(ledger);
     if (may_override(folder)) take_map(run, folder / "map.sw");

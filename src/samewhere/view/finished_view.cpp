@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <samewhere/core/errors.hpp>
+#include <samewhere/report/compare.hpp>
 #include <samewhere/report/html_text.hpp>
 #include <samewhere/run/override.hpp>
 #include <samewhere/view/finished_run.hpp>
@@ -55,14 +57,29 @@ Routes FinishedView::routes(const std::string& token) {
     routes.pages["/"] = routes.pages.at(own_path(0));
     return routes;
   }
+  const std::string asked = token.empty() ? "" : "?token=" + token;
+  if (are_all_runs())
+    routes.pages["/compare"] = [this] { return std::make_shared<const std::string>(compared()); };
   std::vector<Beside> pages;
   for (std::size_t i = 0; i < shown_.size(); ++i)
-    pages.push_back({shown_[i]->title + " · " + shown_[i]->path.string(),
-                     own_path(i) + (token.empty() ? "" : "?token=" + token)});
-  routes.pages["/"] = [page = std::make_shared<const std::string>(side_by_side_html(pages))] {
-    return page;
-  };
+    pages.push_back({shown_[i]->title + " · " + shown_[i]->path.string(), own_path(i) + asked});
+  routes.pages["/"] = [page = std::make_shared<const std::string>(side_by_side_html(
+                           pages, are_all_runs() ? "/compare" + asked : ""))] { return page; };
   return routes;
+}
+
+bool FinishedView::are_all_runs() const {
+  return std::none_of(shown_.begin(), shown_.end(),
+                      [](const auto& shown) { return is_map_file(shown->path); });
+}
+
+// With the verdicts of now.
+std::string FinishedView::compared() const {
+  std::vector<report::ComparedRun> runs;
+  for (const auto& shown : shown_)
+    runs.push_back(
+        report::read_report_html(*shown->page.get(), shown->path.string(), shown->path.string()));
+  return report::compare_html(runs);
 }
 
 void FinishedView::add_routes(std::size_t number, Routes& routes) {
@@ -90,7 +107,7 @@ Answer FinishedView::override_verdict(std::size_t number, const std::string& bod
   });
 }
 
-std::string side_by_side_html(const std::vector<Beside>& pages) {
+std::string side_by_side_html(const std::vector<Beside>& pages, const std::string& compared) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
@@ -101,11 +118,15 @@ std::string side_by_side_html(const std::vector<Beside>& pages) {
       "section { display: flex; flex-direction: column; min-width: 0; }\n"
       "h2 { margin: 0; padding: 4px 10px; font: 600 13px system-ui, sans-serif; background: #fff; "
       "overflow-wrap: anywhere; }\n"
+      "a { position: fixed; right: 12px; bottom: 12px; padding: 4px 12px; border-radius: 7px; "
+      "background: #0b5cad; color: #fff; font: 13px system-ui, sans-serif; }\n"
       "iframe { flex: 1; border: 0; background: #fff; }\n</style></head>\n<body>\n";
   for (const Beside& page : pages)
     html += fmt::format("<section><h2>{}</h2><iframe src=\"{}\" title=\"{}\"></iframe></section>\n",
                         report::escaped(page.title), report::escaped(page.path),
                         report::escaped(page.title));
+  if (!compared.empty())
+    html += fmt::format("<a href=\"{}\">all on one page</a>\n", report::escaped(compared));
   return html + "</body></html>\n";
 }
 

@@ -31,6 +31,8 @@ class FinishedView {
 
   Routes routes(const std::string& token);
   void add_routes(std::size_t number, Routes& routes);
+  bool are_all_runs() const;
+  std::string compared() const;
   void read(std::size_t number);
   Answer override_verdict(std::size_t number, const std::string& body);
 
@@ -43,6 +45,7 @@ struct Beside {
   std::string title;
   std::string path;  // with the token
 };
-std::string side_by_side_html(const std::vector<Beside>& pages);
+// `compared`: the path of a page that compares them; empty: there is none.
+std::string side_by_side_html(const std::vector<Beside>& pages, const std::string& compared);
 
 }  // namespace samewhere::view
