@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -18,14 +20,27 @@ constexpr double kRequestLimit_s = 4.0;
 constexpr double kAnswerLimit_s = 4.0;
 constexpr double kSlowestReader_bytes_s = 100e3;
 constexpr double kFarewell_s = 0.2;
+constexpr double kLook_s = 0.1;
 
 double clock_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+std::string refusal_text(int status) {
+  return fmt::format("HTTP/1.1 {} refused\r\nConnection: close\r\nContent-Length: 0\r\n\r\n",
+                     status);
+}
+
 }  // namespace
 
-Connection::Connection(int socket) : socket_(socket), begin_s_(clock_s()) {}
+void refuse_at_once(int socket) {
+  const std::string answer = refusal_text(503);
+  ::send(socket, answer.data(), answer.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  ::close(socket);
+}
+
+Connection::Connection(int socket, std::function<bool()> is_over)
+    : socket_(socket), is_over_(std::move(is_over)), begin_s_(clock_s()) {}
 
 // What the client still sends is read for a moment: closed before, the system would take back what
 // was answered.
@@ -42,9 +57,14 @@ Connection::~Connection() {
 }
 
 bool Connection::wait_for(short events, double until_s) const {
-  pollfd waiting{socket_, events, 0};
-  const double left_ms = std::max(0.0, 1000.0 * (until_s - clock_s()));
-  return ::poll(&waiting, 1, static_cast<int>(left_ms)) > 0;
+  while (!is_over_()) {
+    pollfd waiting{socket_, events, 0};
+    const double left_s = std::clamp(until_s - clock_s(), 0.0, kLook_s);
+    const int num_ready = ::poll(&waiting, 1, static_cast<int>(std::ceil(1000.0 * left_s)));
+    if (num_ready > 0) return true;
+    if (clock_s() >= until_s) return false;
+  }
+  return false;
 }
 
 bool Connection::read_head() {

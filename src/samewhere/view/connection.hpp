@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <httplib.h>
@@ -11,7 +12,8 @@ namespace samewhere::view {
 // kSlowestReader_bytes_s or faster. Otherwise it counts as broken. Closes the socket.
 class Connection : public httplib::Stream {
  public:
-  explicit Connection(int socket);
+  // `is_over`: the server ends and waits for no client any more.
+  Connection(int socket, std::function<bool()> is_over);
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() override;
@@ -37,8 +39,12 @@ class Connection : public httplib::Stream {
   bool wait_for(short events, double until_s) const;
 
   int socket_;
+  std::function<bool()> is_over_;
   double begin_s_;
   std::string received_;  // and not yet read
 };
+
+// Status 503, for a connection that comes when too many wait; closes the socket without a wait.
+void refuse_at_once(int socket);
 
 }  // namespace samewhere::view

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 
 #include <samewhere/core/channel.hpp>
 #include <samewhere/core/errors.hpp>
@@ -108,6 +109,11 @@ class Server::Http : private httplib::Server {
   using Response = httplib::Response;
 
   Place bound(Place place) {
+    // the library would share a port with other programs
+    set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    });
     if (bind_to_port(place.address.c_str(), place.port)) return place;
     const int taken = place.port;
     if (!place.is_port_wanted) place.port = bind_to_any_port(place.address.c_str());
@@ -122,13 +128,13 @@ class Server::Http : private httplib::Server {
   bool process_and_close_socket(socket_t socket) override {
     const bool is_refused =
         waiting_.send_limited(socket, kMaxWaiting, [](socket_t) { return false; }) > 0;
-    if (is_refused) Connection(socket).refuse(503);
+    if (is_refused) refuse_at_once(socket);
     return !is_refused;
   }
 
   void work() {
     while (const std::optional<socket_t> socket = waiting_.receive()) {
-      Connection connection(*socket);
+      Connection connection(*socket, [this] { return closing_.is_ready(); });
       if (connection.read_head()) answer(connection);
     }
   }

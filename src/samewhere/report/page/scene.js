@@ -161,7 +161,7 @@
     // The run has gone on.
     grow(changed) {
       if (changed.points || changed.all) {
-        this.measureRoom();
+        this.useRoom(samewhere.roomOf(this.run));
         if (Math.abs(this.radius / this.radiusOfGround - 1) > 0.05) {
           this.buildGround();
           if (!this.isMoved && !this.state.get('isFollowing')) this.look('whole', false);
