@@ -95,8 +95,7 @@ bool Connection::read_head() {
 }
 
 void Connection::refuse(int status) {
-  const std::string answer =
-      fmt::format("HTTP/1.1 {} refused\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status);
+  const std::string answer = refusal_text(status);
   write(answer.data(), answer.size());
 }
 

@@ -17,8 +17,9 @@ namespace {
 
 constexpr int kNumThreads = kMaxStreams + 4;  // a stream takes one
 constexpr std::size_t kMaxWaiting = 64;       // connections
-constexpr double kTurn_s = 0.1;               // between two looks of a stream
-constexpr int kTurnsOfSilence = 10;           // then a comment shows whether the client is there
+constexpr int kBacklog = 128;
+constexpr double kTurn_s = 0.1;      // between two looks of a stream
+constexpr int kTurnsOfSilence = 10;  // then a comment shows whether the client is there
 constexpr int kStartTurns = 2000;
 constexpr std::size_t kPart_bytes = 1'000'000;
 constexpr const char* kHtml = "text/html; charset=utf-8";
@@ -110,15 +111,21 @@ class Server::Http : private httplib::Server {
 
   Place bound(Place place) {
     // the library would share a port with other programs
-    set_socket_options([](socket_t socket) {
+    socket_t listening = INVALID_SOCKET;
+    set_socket_options([&listening](socket_t socket) {
+      listening = socket;
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
     });
-    if (bind_to_port(place.address.c_str(), place.port)) return place;
-    const int taken = place.port;
-    if (!place.is_port_wanted) place.port = bind_to_any_port(place.address.c_str());
-    if (!place.is_port_wanted && place.port > 0) return place;
-    place.port = taken;
+    bool is_bound = bind_to_port(place.address.c_str(), place.port);
+    if (!is_bound && !place.is_port_wanted) {
+      const int port = bind_to_any_port(place.address.c_str());
+      is_bound = port > 0;
+      if (is_bound) place.port = port;
+    }
+    set_socket_options([](socket_t) {});
+    if (is_bound) ::listen(listening, kBacklog);  // the library has fewer, and clients would wait
+    if (is_bound) return place;
     throw core::InputError(
         host_of(place) +
         ": cannot be served: it is taken, or not of this machine; expected another --view=PORT");
