@@ -137,6 +137,10 @@ def check_filters(page, loops):
         page.run("samewhere.candidates.showCheck(arguments[0])", check)
         page.check(f"the filter of the check {check} counts as loops.json", page.shown() == count, page.shown())
     page.run("samewhere.candidates.showCheck('')")
+    page.by_id("near-filter").click()
+    near = page.run("const at = samewhere.run.position(samewhere.state.get('row')); return samewhere.run.candidates.filter(({ends}) => ends.some((end) => end && Math.hypot(...end.map((v, k) => v - at[k])) <= 3)).length")
+    page.check("the filter of near places counts them", page.shown() == near < len(loops["candidates"]), page.shown())
+    page.by_id("near-filter").click()
     page.run("const s = document.getElementById('score-minimum'); s.value = 0.5; s.dispatchEvent(new Event('input'))")
     largest = max((c["scores"].get("num_inliers") or 0 for c in loops["candidates"]), default=0)
     expected = sum((c["scores"].get("num_inliers") or 0) >= int(0.25 * largest + 0.5) for c in loops["candidates"])
@@ -187,6 +191,14 @@ def check_time(page):
     page.run("samewhere.plots.setSpan(samewhere.plots.whole)")
 
 
+def check_floors(page):
+    page.check("one floor has no choice of floors", page.run("return document.getElementById('floor').hidden"))
+    floors = page.run("""
+      const z = [0, 0, 0, 0, 0.4, 0.8, 1.2, 1.6, 1.6, 1.6, 2.0, 2.4, 2.8, 3.1, 3.1, 3.1, 3.1, 3.5].flatMap((v) => Array(v === 0 || v === 3.1 ? 9 : 3).fill(v));
+      return samewhere.floorsOf({num: z.length, positions: z.flatMap((v) => [0, 0, v])})""")
+    page.check("floors are found, half landings are none", len(floors) == 2 and abs(floors[0]) < 0.3 and abs(floors[1] - 3.1) < 0.3, floors)
+
+
 def check_quiet(page):
     errors = [entry for entry in page.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
     page.check("the console has no error and no warning", not errors, errors[:3] if errors else "")
@@ -218,6 +230,7 @@ def check_page(report, pictures, profiles):
                 check_filters(page, loops)
                 check_click_on_loop(page)
                 check_time(page)
+                check_floors(page)
             elif loops["candidates"]:
                 page.run("samewhere.state.set('selected', samewhere.candidates.found[0])")
             if pictures:

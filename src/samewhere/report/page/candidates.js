@@ -3,6 +3,8 @@
   const { element, byId, number } = samewhere;
   const kFirstRows = 60;
 
+  const kNear = 3; // of the camera, in the unit of the run
+
   const inliersOf = (candidate) => candidate.scores.num_inliers || 0;
   const orders = {
     'most inliers first': (a, b) => inliersOf(b) - inliersOf(a) || (b.scores.num_matches || 0) - (a.scores.num_matches || 0) || a.id - b.id,
@@ -54,6 +56,9 @@
       for (const id of ['check-filter', 'order']) byId(id).addEventListener('change', () => this.apply());
       byId('score-filter').addEventListener('change', () => { byId('score-minimum').value = 0; this.apply(); });
       byId('score-minimum').addEventListener('input', () => this.apply());
+      byId('near-unit').textContent = this.run.unit;
+      byId('near-filter').addEventListener('change', () => this.apply());
+      this.state.onChange('row', () => { if (byId('near-filter').checked) this.apply(); });
     }
 
     fillChecks() {
@@ -89,6 +94,12 @@
       return score === 'similarity' ? value : Math.round(value);
     }
 
+    // Whether one of the two places is near the camera at the time shown.
+    isNear(candidate) {
+      const camera = this.run.position(this.state.get('row'));
+      return Boolean(camera) && candidate.ends.some((end) => end && Math.hypot(...end.map((value, k) => value - camera[k])) <= kNear);
+    }
+
     // numRows: of the list; 0: it stays as it is.
     apply(numRows = kFirstRows) {
       const check = byId('check-filter').value;
@@ -97,7 +108,7 @@
       byId('score-text').textContent = minimum > 0 ? number(minimum) : 'all';
       const found = this.run.candidates.filter((candidate) => this.kinds.has(candidate.kind)
         && (!check || (candidate.verdict !== 'LOOP' && candidate.stage === check))
-        && (minimum <= 0 || (candidate.scores[score] || 0) >= minimum));
+        && (minimum <= 0 || (candidate.scores[score] || 0) >= minimum) && (!byId('near-filter').checked || this.isNear(candidate)));
       found.sort(orders[byId('order').value]);
       this.found = found;
       this.tellCount();

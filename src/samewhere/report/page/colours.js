@@ -78,12 +78,18 @@
     const modes = [{ name: 'time', text: 'time' }];
     if (run.hasTruth) modes.push({ name: 'error', text: 'position error' });
     modes.push({ name: 'status', text: 'tracking status' }, { name: 'height', text: 'height' });
+    if (samewhere.floorsOf && !run.is_scale_unknown && !run.is_live && samewhere.floorsOf(run).length > 1) modes.push({ name: 'floor', text: 'floor' });
     return modes;
   };
   // The scale of a mode: range of values, and the colour of a frame.
   samewhere.pathColouring = function (run, mode) {
     if (mode === 'status') {
       return { colour: (row) => samewhere.channels(samewhere.statusColour(run.statusName(row))) };
+    }
+    if (mode === 'floor') {
+      const floors = samewhere.floorsOf(run);
+      const share = (row) => samewhere.floorAt(floors, run.positions[3 * row + 2]) / Math.max(1, floors.length - 1);
+      return { colour: (row) => (share(row) < 0 ? samewhere.channels(samewhere.css('idle')) : samewhere.scaleColour('time', share(row))) };
     }
     const valueOf = (of, row) => ({ time: of.times[row], error: of.errors[row], height: of.positions[3 * row + 2] })[mode];
     const value = (row) => valueOf(run, row);

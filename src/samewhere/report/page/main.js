@@ -26,23 +26,6 @@
     if (run.covariances.length) addLayer(state, 'ellipses', 'covariance', false);
   }
 
-  function startHeights(run, state) {
-    const heights = Array.from(run.points.positions.filter((_, i) => i % 3 === 2)).sort((a, b) => a - b);
-    byId('height-section').hidden = heights.length === 0 || Boolean(run.is_live);
-    if (byId('height-section').hidden) return state.set('heights', [-1e6, 1e6]);
-    const [low, high] = [0, heights.length - 1].map((i) => heights[i]);
-    const sliders = [byId('height-low'), byId('height-high')];
-    sliders.forEach((slider, i) => Object.assign(slider, { min: low, max: high, step: (high - low) / 200 || 1, value: i ? high : low }));
-    const apply = () => {
-      const values = sliders.map((slider) => Number(slider.value)).sort((a, b) => a - b);
-      const isWhole = values[0] <= low + 1e-6 && values[1] >= high - (high - low) / 150;
-      byId('height-text').textContent = isWhole ? 'all' : `${values[0].toFixed(1)} to ${values[1].toFixed(1)} ${run.unit}`;
-      state.set('heights', isWhole ? [-1e6, 1e6] : values);
-    };
-    sliders.forEach((slider) => slider.addEventListener('input', apply));
-    apply();
-  }
-
   function startColours(run, state) {
     const select = byId('colour-by');
     const modes = samewhere.colourModes(run);
@@ -108,7 +91,7 @@
     const tabs = document.querySelectorAll('[role=tab]');
     tabs.forEach((tab) => tab.addEventListener('click', () => samewhere.openTab(tab.getAttribute('aria-controls'))));
     addLayers(run, state);
-    startHeights(run, state);
+    samewhere.startHeights(run, state);
     const nextColour = startColours(run, state);
     const map = startMap(run, state);
     const timeline = new samewhere.Timeline(run, state);

@@ -37,6 +37,7 @@
       material.defines.USE_DASH = '';
       [material.dashSize, material.gapSize] = options.dash;
     }
+    if (options.clip) Object.assign(material, { clipping: true, clippingPlanes: options.clip });
     material.transparent = true;
     material.uniforms.opacity.value = options.opacity || 1; // the renderer does not pass it on
     const lines = new THREE.LineSegments2(geometry, material);
@@ -64,7 +65,7 @@
   function thinLines(values, options) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(values), 3));
-    const common = { color: options.colour, transparent: true, opacity: options.opacity || 1, depthWrite: false };
+    const common = { color: options.colour, transparent: true, opacity: options.opacity || 1, depthWrite: false, clippingPlanes: options.clip || null };
     const material = options.dash ? new THREE.LineDashedMaterial({ ...common, dashSize: options.dash[0], gapSize: options.dash[1] }) : new THREE.LineBasicMaterial(common);
     const lines = new THREE.LineSegments(geometry, material);
     if (options.dash) lines.computeLineDistances();
@@ -227,7 +228,7 @@
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(dots), 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(colours), 3));
-      const material = new THREE.PointsMaterial({ size: 5 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: THREE.VertexColors, map: sprite('dot', '#ffffff', '#ffffff'), alphaTest: 0.5 });
+      const material = new THREE.PointsMaterial({ size: 5 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: THREE.VertexColors, map: sprite('dot', '#ffffff', '#ffffff'), alphaTest: 0.5, clippingPlanes: this.clip });
       const path = dots.length ? new THREE.Points(geometry, material) : null;
       if (path) path.renderOrder = 3;
       this.replace('path', path);
@@ -252,7 +253,7 @@
         const path = this.run[name];
         const rows = continuedRows(path.positions, path.times.length, (row) => path.times[row] - path.times[row - 1] > 1);
         const dash = name === 'truth' ? [this.radius / 60, this.radius / 90] : null;
-        this.replace(name, rows.length ? thinLines(segments(path.positions, rows), { colour: samewhere.css(name), dash }) : null);
+        this.replace(name, rows.length ? thinLines(segments(path.positions, rows), { colour: samewhere.css(name), dash, clip: this.clip }) : null);
       }
     }
 
@@ -269,7 +270,7 @@
           }
         });
       }
-      this.replace('ellipses', values.length ? thinLines(values, { colour: samewhere.css('ellipse'), opacity: 0.7 }) : null);
+      this.replace('ellipses', values.length ? thinLines(values, { colour: samewhere.css('ellipse'), opacity: 0.7, clip: this.clip }) : null);
     }
 
     showCandidates(candidates) {
@@ -289,7 +290,7 @@
     drawLines(name, candidates, kind, style) {
       const values = candidates.flatMap(({ ends }) => [...ends[0], ...ends[1]]);
       const dash = style.dash && style.dash.map((pixels) => (pixels * this.radius) / 400);
-      const options = { ...style, colour: new THREE.Color(samewhere.css(kind)), dash, depthTest: kind !== 'accepted' && kind !== 'false', order: 4 };
+      const options = { ...style, colour: new THREE.Color(samewhere.css(kind)), dash, depthTest: kind !== 'accepted' && kind !== 'false', order: 4, clip: this.clip };
       this.replace(name, values.length ? (kind === 'rejected' ? thinLines : wideLines)(values, options) : null);
       this.size(this[name]);
     }
@@ -298,7 +299,7 @@
       const geometry = new THREE.BufferGeometry();
       const middles = candidates.flatMap(({ ends }) => [0, 1, 2].map((k) => (ends[0][k] + ends[1][k]) / 2));
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(middles), 3));
-      const material = new THREE.PointsMaterial({ map: sprite(mark, colour, samewhere.css('scene')), size: pixels * this.renderer.getPixelRatio(), sizeAttenuation: false, transparent: true, depthTest: false });
+      const material = new THREE.PointsMaterial({ map: sprite(mark, colour, samewhere.css('scene')), size: pixels * this.renderer.getPixelRatio(), sizeAttenuation: false, transparent: true, depthTest: false, clippingPlanes: this.clip });
       const marks = new THREE.Points(geometry, material);
       marks.renderOrder = 6;
       return marks;
