@@ -303,6 +303,27 @@ std::optional<std::string> note_on(const core::Ledger& ledger, const pipeline::C
       num_unconfirmed, config.verify.min_views);
 }
 
+void feed_frame(core::Frame& frame, std::optional<RunOdometry>& odometry, MappedSlam& mapped,
+                core::Timings& timings) {
+  const core::ScopedTimer timer(timings, report::kWholeFrameStage);
+  if (odometry) odometry->see(frame);
+  mapped.feed(frame);
+}
+
+// What is noted of each frame after it was fed.
+struct RunNotes {
+  std::vector<std::string> names;
+  LoopCount loops;
+
+  void add(const core::Frame& frame, const pipeline::Slam& slam, FrameFeed& feed,
+           Watcher* watcher) {
+    names.push_back(frame.name);
+    loops.add(slam.newest_rows());
+    feed.note(fmt::format("{}, {}", core::name_of(slam.frames().back().status), loops.text()));
+    if (watcher != nullptr) watcher->see_frame(frame, names, slam);
+  }
+};
+
 }  // namespace
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Config& given,
@@ -323,21 +344,13 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
                     watched(plan, watcher));
   if (odometry) mapped.follow(odometry->path());
   const pipeline::Slam& slam = mapped.slam();
-  std::vector<std::string> names;
-  LoopCount loops;
+  RunNotes notes;
   FrameFeed feed(*source, outcome, is_quiet);
   if (watcher != nullptr) watcher->begin(source->info(), config, !mapped.is_metric());
   while (std::optional<core::Frame> frame = feed.next()) {
-    {
-      const core::ScopedTimer timer(outcome.record.timings, report::kWholeFrameStage);
-      if (odometry) odometry->see(*frame);
-      mapped.feed(*frame);
-    }
-    names.push_back(frame->name);
+    feed_frame(*frame, odometry, mapped, outcome.record.timings);
     note_first_pose(slam, outcome.record);
-    loops.add(slam.newest_rows());
-    feed.note(fmt::format("{}, {}", core::name_of(slam.frames().back().status), loops.text()));
-    if (watcher != nullptr) watcher->see_frame(*frame, names, slam);
+    notes.add(*frame, slam, feed, watcher);
   }
 
   outcome.map_error = mapped.finish();
@@ -346,7 +359,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
 
   report::RunRecord& record = outcome.record;
   record.thumbnails = mapped.take_thumbnails();
-  record_slam(slam, names, record);
+  record_slam(slam, notes.names, record);
   record_for_page(mapped, config, record);
   if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
   record_figures(mapped, config, plan, truth, record);

@@ -23,12 +23,14 @@ class Connection : public httplib::Stream {
   // An answer without content; for what is refused.
   void refuse(int status);
 
-  // As in httplib::Stream. Some belong to other versions of it.
+  // As in httplib::Stream, of which each version has some of these.
+  // NOLINTBEGIN(modernize-use-override)
   virtual bool is_readable() const;
+  virtual bool is_writable() const;
   virtual bool wait_readable() const { return true; }
   virtual bool wait_writable() const { return is_writable(); }
-  virtual bool is_writable() const;
   virtual time_t duration() const { return 0; }
+  // NOLINTEND(modernize-use-override)
   ssize_t read(char* bytes, size_t size) override;
   ssize_t write(const char* bytes, size_t size) override;
   void get_remote_ip_and_port(std::string& ip, int& port) const override;

@@ -6,7 +6,7 @@
 namespace samewhere::view {
 namespace {
 
-constexpr double kLook_s = 0.02;
+constexpr double kPaceLook_s = 0.02;
 constexpr double kMaxGap_s = 2.0;  // a longer one in the recording is not waited for
 
 double now_s() {
@@ -30,7 +30,7 @@ bool Pace::is_due(double stamp_s) {
 }
 
 void Pace::wait(double stamp_s, const std::function<bool()>& is_over) {
-  while (!is_due(stamp_s) && !is_over()) never_.is_open_for(kLook_s);
+  while (!is_due(stamp_s) && !is_over()) never_.is_open_for(kPaceLook_s);
   last_stamp_s_ = stamp_s;
   last_s_ = now_s();
 }

@@ -7,8 +7,8 @@
 
 namespace samewhere::view {
 
-inline constexpr std::size_t kMaxHead_bytes = 16 * 1024;
-inline constexpr std::size_t kMaxBody_bytes = 64 * 1024;
+inline constexpr std::size_t kMaxHead_bytes = 16'384;
+inline constexpr std::size_t kMaxBody_bytes = 65'536;
 
 // The head of an HTTP request with those headers alone that the viewer reads. What the HTTP library
 // would do for others (ranges, compression, forms, chunked bodies) costs memory or time that a
