@@ -92,6 +92,14 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+double resident_memory_mib() {
+  std::ifstream statm("/proc/self/statm");
+  double total_pages = 0.0;
+  double resident_pages = 0.0;
+  if (!(statm >> total_pages >> resident_pages)) return 0.0;
+  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
 void return_free_memory() {
 #ifdef __GLIBC__
   constexpr std::size_t kKeepNothing = 0;

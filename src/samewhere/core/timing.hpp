@@ -87,6 +87,9 @@ class ScopedTimer {
 // Highest resident memory of this process so far, MiB.
 double peak_memory_mib();
 
+// Resident memory of this process now, MiB; 0 where the system does not tell.
+double resident_memory_mib();
+
 // What was freed goes back to the system, as far as the allocator lets it. After large work: many
 // small pieces that were needed at once would otherwise stay with the program for good.
 void return_free_memory();

@@ -89,6 +89,8 @@ TEST(Timing, PeakMemoryGrowsWithAnAllocationThatIsTouched) {
   const std::vector<char> block(static_cast<std::size_t>(before_mib + 64.0) << 20, 'x');
   EXPECT_EQ(block.back(), 'x');
   EXPECT_GE(peak_memory_mib(), before_mib + 32.0);
+  EXPECT_GE(resident_memory_mib(), before_mib + 32.0);
+  EXPECT_LE(resident_memory_mib(), peak_memory_mib() + 8.0);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/report/compare.hpp>
 #include <samewhere/report/html_text.hpp>
-#include <samewhere/report/packed.hpp>
 #include <samewhere/report/page_data.hpp>
+#include <samewhere/report/page_parts.hpp>
 #include <samewhere/report/page_template.hpp>
 
 namespace samewhere::report {
@@ -155,12 +155,13 @@ std::string compare_html(const std::vector<ComparedRun>& runs) {
   for (const ComparedRun& run : runs) {
     title += (title.empty() ? "" : " and ") + run.name;
     if (json.size() > 1) json += ',';
-    json += fmt::format(R"({{"name":{},"run":{},"pictures":{},"durations":{}}})",
-                        for_script(run.name), run.run_json, run.pictures_json, run.durations_json);
+    json +=
+        fmt::format(R"({{"name":{},"run":{},"pictures":{},"durations":{}}})",
+                    json_for_script(run.name), run.run_json, run.pictures_json, run.durations_json);
   }
   return filled(compare_template(), {{"{{title}}", escaped(title)},
                                      {"{{runs}}", json + "]"},
-                                     {"{{judged}}", for_script(judged_json(runs))}});
+                                     {"{{judged}}", json_for_script(judged_json(runs))}});
 }
 
 }  // namespace samewhere::report

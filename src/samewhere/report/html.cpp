@@ -24,7 +24,7 @@ std::string filled_page(std::string_view page, const PageBlocks& blocks,
 
 PageBlocks page_blocks(const RunRecord& record) {
   return {record.title, page_run_json(record), page_pictures_json(record),
-          page_durations_json(record.timings)};
+          page_durations_json(record)};
 }
 
 std::string report_html(const RunRecord& record) {

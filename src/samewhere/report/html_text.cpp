@@ -43,14 +43,4 @@ std::string filled(
   return html.append(page);
 }
 
-std::string for_script(const nlohmann::ordered_json& json) {
-  // a name that is no UTF-8 must not cost the whole text
-  const std::string text =
-      json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) c == '<' ? safe.append("\\u003c") : safe.append(1, c);
-  return safe;
-}
-
 }  // namespace samewhere::report

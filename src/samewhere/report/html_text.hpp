@@ -5,8 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 namespace samewhere::report {
 
 // Text as it may stand in HTML, between tags or in a quoted attribute.
@@ -17,8 +15,5 @@ std::string escaped(std::string_view text);
 std::string filled(
     std::string_view page,
     std::initializer_list<std::pair<std::string_view, std::string>> text_of_placeholder);
-
-// JSON as it may stand in a script element: `<` is escaped, and what is no UTF-8 replaced.
-std::string for_script(const nlohmann::ordered_json& json);
 
 }  // namespace samewhere::report

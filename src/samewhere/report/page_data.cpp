@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <samewhere/report/funnel.hpp>
-#include <samewhere/report/html_text.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/packed.hpp>
 #include <samewhere/report/page_data.hpp>
@@ -196,7 +195,8 @@ std::string page_pictures_json(const RunRecord& record) {
   return json_for_script(pictures);
 }
 
-std::string page_durations_json(const core::Timings& timings) {
+std::string page_durations_json(const RunRecord& record) {
+  const core::Timings& timings = record.timings;
   std::vector<float> frames_ms;
   Json stages = Json::array();
   for (const auto& [stage, durations_ms] : timings.durations_ms()) {
@@ -208,7 +208,16 @@ std::string page_durations_json(const core::Timings& timings) {
                       {"p95_ms", summary.p95_ms},
                       {"processor_ms", timings.processor_ms().at(stage)}});
   }
-  return json_for_script({{"frames_ms", packed(frames_ms)}, {"stages", std::move(stages)}});
+  std::vector<std::uint32_t> memory_frames;
+  std::vector<float> memory_mib;
+  for (const MemorySample& sample : record.memory) {
+    memory_frames.push_back(static_cast<std::uint32_t>(sample.frame));
+    memory_mib.push_back(static_cast<float>(sample.mib));
+  }
+  return json_for_script(
+      {{"frames_ms", packed(frames_ms)},
+       {"stages", std::move(stages)},
+       {"memory", {{"frames", packed(memory_frames)}, {"mib", packed(memory_mib)}}}});
 }
 
 }  // namespace samewhere::report

@@ -20,6 +20,6 @@ inline constexpr std::size_t kMaxPagePictures_bytes = 9'000'000;
 // out.
 std::string page_run_json(const RunRecord& record);
 std::string page_pictures_json(const RunRecord& record);
-std::string page_durations_json(const core::Timings& timings);
+std::string page_durations_json(const RunRecord& record);
 
 }  // namespace samewhere::report

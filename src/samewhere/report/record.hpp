@@ -51,6 +51,12 @@ struct PositionCovariance {
   Eigen::Matrix3d in_world_m2 = Eigen::Matrix3d::Zero();
 };
 
+// Resident memory of the program at a frame.
+struct MemorySample {
+  int frame = 0;  // 0-based position in the source
+  double mib = 0.0;
+};
+
 // The threshold of a score of loops.json.
 struct ScoreLimit {
   std::string score;        // "num_inliers"
@@ -77,6 +83,7 @@ struct RunRecord {
   std::vector<PositionCovariance> covariances;  // of some keyframes; empty if the scale is unknown
   std::vector<Figure> figures;
   core::Timings timings;  // stage kWholeFrameStage gives the frames per second
+  std::vector<MemorySample> memory;  // in the order of the frames
   // CPU time of the whole program after the last frame; nothing for live sources and where several
   // frames are processed at once.
   std::optional<double> processor_ms;

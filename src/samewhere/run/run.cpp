@@ -64,6 +64,7 @@ class FrameFeed {
     try {
       const core::ScopedTimer timer(timings_, report::kWaitForInputStage);
       ++num_given_;
+      note_memory();
       std::optional<core::Frame> frame = source_.next();
       if (frame) num_dropped_ += frame->num_dropped_before;
       // or while it was waited for
@@ -90,6 +91,13 @@ class FrameFeed {
   }
 
  private:
+  // About 300 samples of ten minutes.
+  void note_memory() {
+    constexpr int kFrames = 50;
+    if (num_given_ % kFrames == 1)
+      outcome_.record.memory.push_back({num_given_ - 1, core::resident_memory_mib()});
+  }
+
   core::Source& source_;
   RunOutcome& outcome_;
   core::Timings timings_;

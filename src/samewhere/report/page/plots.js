@@ -52,6 +52,10 @@
       if (run.durations_ms.length === run.num) {
         this.add('time', 'Time per frame, ms', () => [this.line('time', run.times, run.durations_ms, 'path')]);
       }
+      if (run.memory.mib.length > 1) {
+        const times = Array.from(run.memory.frames, (frame) => run.times[Math.min(frame, run.num - 1)]);
+        this.add('memory', 'Memory of the program, MiB', () => [this.line('memory', times, run.memory.mib, 'path')]);
+      }
       state.watch('theme', () => this.build());
       state.watch('candidates', () => this.refresh(['candidates']));
       state.watch('row', () => this.showCursor());

@@ -94,6 +94,7 @@
       this.points = { positions: this.axes.positions(unpacked(data.points.positions)), colours: unpacked(data.points.colours), numInMap: data.points.num_in_map };
       this.durations_ms = unpacked(durations.frames_ms);
       this.stages = durations.stages;
+      this.memory = durations.memory ? { frames: unpacked(durations.memory.frames), mib: unpacked(durations.memory.mib) } : { frames: [], mib: [] };
       this.unit = data.is_scale_unknown ? 'map units' : 'm';
       this.compareWithPaths();
       this.rowOfIndex = new Map();
