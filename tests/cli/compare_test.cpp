@@ -23,9 +23,9 @@ class Compare : public testing::Test {
 
 TEST_F(Compare, WritesOnePageOfSeveralRunsAndTellsWhatItCannotRead) {
   for (const char* name : {"a", "b"}) {
-    const Outcome run = run_program("run 'twin:office-loop?seed=2' --set twin.num_frames=6 --out " +
-                                        quoted(path(name)),
-                                    folder_.root());
+    const Outcome run = run_program(
+        "run 'twin:office-loop?seed=2' --set twin.num_frames=6 --out " + quoted(path(name)),
+        folder_.root());
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
   const std::string both = quoted(path("a")) + " " + quoted(path("b"));

@@ -63,9 +63,10 @@ bool Progress::is_due(int done, double elapsed_s) const {
 
 void Progress::draw(int done, double elapsed_s, std::string_view note) {
   const double per_second = done / elapsed_s;
-  std::string line = total_ > 0 ? fmt::format("{} {}/{}  {:.1f} per s  {} left", what_, done, total_,
-                                              per_second, time_left(total_ - done, per_second))
-                                : fmt::format("{} {}  {:.1f} per s", what_, done, per_second);
+  std::string line = total_ > 0
+                         ? fmt::format("{} {}/{}  {:.1f} per s  {} left", what_, done, total_,
+                                       per_second, time_left(total_ - done, per_second))
+                         : fmt::format("{} {}  {:.1f} per s", what_, done, per_second);
   if (!note.empty()) line += fmt::format("  {}", note);
   if (is_terminal_) {
     if (total_ > 0) line = bar(done, total_) + line;

@@ -82,7 +82,7 @@ struct RunRecord {
   std::vector<ScoreLimit> limits;                                // in the order of the checks
   std::vector<PositionCovariance> covariances;  // of some keyframes; empty if the scale is unknown
   std::vector<Figure> figures;
-  core::Timings timings;  // stage kWholeFrameStage gives the frames per second
+  core::Timings timings;             // stage kWholeFrameStage gives the frames per second
   std::vector<MemorySample> memory;  // in the order of the frames
   // CPU time of the whole program after the last frame; nothing for live sources and where several
   // frames are processed at once.
