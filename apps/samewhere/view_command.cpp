@@ -45,9 +45,9 @@ void add_view_command(CLI::App& app) {
       "Examples:\n"
       "  samewhere view runs/demo               its report; loops can be rejected or accepted by "
       "hand\n"
-      "  samewhere view runs/demo runs/demo-2   two runs side by side\n"
-      "  samewhere view runs/demo/map.sw        a map file alone\n"
-      "  samewhere view runs/demo --at 0.0.0.0:8080  for other machines, with a token\n"
+      "  samewhere view runs/monday runs/tuesday  two runs side by side\n"
+      "  samewhere view runs/kitchen/map.sw     a map file alone\n"
+      "  samewhere view runs/kitchen --at 0.0.0.0:8080  for other machines, with a token\n"
       "Ctrl-C ends it. A run that goes on: samewhere run SOURCE --view; there loops cannot be "
       "overridden,\nso that the results are the same with and without a page.");
 }
