@@ -9,13 +9,7 @@
 namespace samewhere::app {
 namespace {
 
-int run(int argc, char** argv) {
-  CLI::App app("Visual SLAM that rejects false loop closures caused by perceptual aliasing");
-  app.set_version_flag("--version", "samewhere " SAMEWHERE_VERSION);
-  app.require_subcommand(1);
-  app.footer(
-      "`samewhere COMMAND --help` shows examples. Start with: samewhere run twin:twin-corridors");
-  int exit_code = core::kDone;
+void add_commands(CLI::App& app, int& exit_code) {
   add_run_command(app, exit_code);
   add_loops_command(app, exit_code);
   add_eval_command(app);
@@ -35,6 +29,16 @@ int run(int argc, char** argv) {
   add_train_command(app);
   add_dds_command(app);
   add_doctor_command(app);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Visual SLAM that rejects false loop closures caused by perceptual aliasing");
+  app.set_version_flag("--version", "samewhere " SAMEWHERE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "`samewhere COMMAND --help` shows examples. Start with: samewhere run twin:twin-corridors");
+  int exit_code = core::kDone;
+  add_commands(app, exit_code);
   refuse_empty_values(app);
   try {
     app.parse(argc, argv);

@@ -206,18 +206,22 @@ class Server::Http : private httplib::Server {
     response.set_chunked_content_provider(
         "text/event-stream",
         [this, slot, next = open(), num_silent = 0](std::size_t, httplib::DataSink& sink) mutable {
-          const std::optional<std::string> events = next();
-          if (!events) sink.done();
-          if (!events) return true;
-          num_silent = events->empty() ? num_silent + 1 : 0;
-          const bool is_due = !events->empty() || num_silent >= kTurnsOfSilence;
-          if (is_due) {
-            const std::string text = events->empty() ? ":\n\n" : *events;
-            num_silent = 0;
-            if (!sink.write(text.data(), text.size())) return false;
-          }
-          return closing_.is_open_for(kTurn_s);
+          return send_next(next, num_silent, sink);
         });
+  }
+  // What is new, or after some silence a comment, by which a broken connection is noticed. False:
+  // the connection is broken, or the server ends.
+  bool send_next(const NextEvents& next, int& num_silent, httplib::DataSink& sink) {
+    const std::optional<std::string> events = next();
+    if (!events) {
+      sink.done();
+      return true;
+    }
+    num_silent = events->empty() ? num_silent + 1 : 0;
+    if (events->empty() && num_silent < kTurnsOfSilence) return closing_.is_open_for(kTurn_s);
+    const std::string text = events->empty() ? ":\n\n" : *events;
+    num_silent = 0;
+    return sink.write(text.data(), text.size()) && closing_.is_open_for(kTurn_s);
   }
 
   Place place_;
