@@ -178,16 +178,21 @@ std::filesystem::path begin_results(report::ResultsFolder& results, const pipeli
   return results.path() / "map.sw";
 }
 
+// What is told of a run while it goes on.
+struct Listeners {
+  std::function<std::filesystem::path()> begin;  // at the first frame; returns the map's file
+  run::Watcher* watcher = nullptr;               // optional
+};
+
 run::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunCommand& command,
-                        const pipeline::Config& config, Work work,
-                        const std::function<std::filesystem::path()>& begin,
-                        run::Watcher* watcher) {
+                        const pipeline::Config& config, Work work, const Listeners& listeners) {
   if (work == Work::kRecognition)
     return run::run_recognition(
-        std::move(source), config, [&] { begin(); }, command.figures.is_quiet);
-  return run::run_slam(std::move(source), config,
-                       {.known = command.map, .is_known_fixed = command.localize, .begin = begin},
-                       command.figures.is_quiet, watcher);
+        std::move(source), config, [&] { listeners.begin(); }, command.figures.is_quiet);
+  return run::run_slam(
+      std::move(source), config,
+      {.known = command.map, .is_known_fixed = command.localize, .begin = listeners.begin},
+      command.figures.is_quiet, listeners.watcher);
 }
 
 // Pages that are open show the report until they are closed.
@@ -216,9 +221,9 @@ int execute(const RunCommand& command, Work work) {
     calibration = run::calibrate_if_unknown(source, config);
     run::require_slam_input(source->info(), config);
   }
-  run::RunOutcome outcome = work_on(
-      std::move(source), command, config, work,
-      [&] { return begin_results(results, config, calibration); }, viewer.get());
+  run::RunOutcome outcome =
+      work_on(std::move(source), command, config, work,
+              {[&] { return begin_results(results, config, calibration); }, viewer.get()});
   report::RunRecord& record = outcome.record;
   if (calibration) record.figures.push_back(run::focal_length_figure(*calibration));
   std::vector<std::string> errors;
@@ -327,7 +332,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                      Work::kSlam, exit_code)
       ->footer(
           "Examples:\n"
-          "  samewhere run twin:twin-corridors --out runs/demo  the rendered building, no "
+          "  samewhere run twin:twin-corridors --out runs/twin  the rendered building, no "
           "download\n"
           "  samewhere run ~/data/fr1_room                      a TUM RGB-D folder with "
           "camera.txt\n"
