@@ -44,12 +44,12 @@ class TakenPort {
   int number_ = 0;
 };
 
-constexpr const char* kWalk = "run 'twin:office-loop?seed=2' --set twin.num_frames=3 ";
+constexpr const char* kThreeFrames = "run 'twin:office-loop?seed=2' --set twin.num_frames=3 ";
 
 TEST_F(View, PortThatIsTakenIsBadInputBeforeAnythingIsWritten) {
   const TakenPort taken;
   const Outcome outcome =
-      run(fmt::format("{} --out {} --view={}", kWalk, quoted(path("run")), taken.number()));
+      run(fmt::format("{} --out {} --view={}", kThreeFrames, quoted(path("run")), taken.number()));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find(fmt::format("127.0.0.1:{}: cannot be served", taken.number())),
             std::string::npos)
@@ -59,15 +59,15 @@ TEST_F(View, PortThatIsTakenIsBadInputBeforeAnythingIsWritten) {
 
 TEST_F(View, RunWithoutAPageEndsByItself) {
   const Outcome outcome =
-      run(fmt::format("{} --out {} --view --quiet", kWalk, quoted(path("run"))));
+      run(fmt::format("{} --out {} --view --quiet", kThreeFrames, quoted(path("run"))));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.err.find("look at http://127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_TRUE(std::filesystem::exists(path("run") / "report.html"));
 }
 
 TEST_F(View, OtherMachinesNeedAToken) {
-  const Outcome outcome =
-      run(fmt::format("{} --out {} --view=0.0.0.0:38471 --quiet", kWalk, quoted(path("run"))));
+  const Outcome outcome = run(
+      fmt::format("{} --out {} --view=0.0.0.0:38471 --quiet", kThreeFrames, quoted(path("run"))));
   EXPECT_EQ(outcome.exit_code, 0);
   const std::size_t at = outcome.err.find("?token=");
   ASSERT_NE(at, std::string::npos) << outcome.err;
@@ -75,7 +75,7 @@ TEST_F(View, OtherMachinesNeedAToken) {
 }
 
 TEST_F(View, BadOptionsAreBadInput) {
-  const std::string out = kWalk + std::string("--out ") + quoted(path("run"));
+  const std::string out = kThreeFrames + std::string("--out ") + quoted(path("run"));
   for (const char* bad :
        {"--view=0", "--view=somewhere:80", "--view=99999", "--view-token secret-token",
         "--view --view-token short", "--view --view-token 'with a space'"}) {
