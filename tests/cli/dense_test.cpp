@@ -96,6 +96,7 @@ TEST_F(Dense, FindsTheDepthOfAStereoRunInItsPictures) {
   const Outcome fused = of_twin("dense ");
   ASSERT_EQ(fused.exit_code, 0) << fused.err;
   for (const char* name : {"pair/cloud.ply", "pair/map.bt"}) EXPECT_TRUE(is_there(name)) << name;
+  EXPECT_NE(core::read_file(path("pair/report.html")).find("\"dense\":{"), std::string::npos);
   const std::string of_one_camera = "dense --set 'source=" + walk + "mono' ";
   expect_clear_error(of_twin(of_one_camera), {"neither depth images nor a second camera"});
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <samewhere/report/record.hpp>
 
@@ -25,6 +26,11 @@ PageBlocks page_blocks(const RunRecord& record);
 // The page as a viewer serves it: it may ask the server that it came from, for what the block
 // `live` says.
 std::string served_html(const PageBlocks& blocks, const std::string& live_json);
+
+// The page with a dense point cloud beside the landmarks, in place of an earlier one. Throws
+// InputError if the text is no report page.
+std::string with_dense_cloud(const std::string& report_html,
+                             const std::vector<ColouredPoint>& cloud);
 
 // The page up to its last block, which holds the durations.
 std::string without_durations(const std::string& report_html);

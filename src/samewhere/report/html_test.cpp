@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <samewhere/core/errors.hpp>
 #include <samewhere/report/html.hpp>
 #include <samewhere/report/html_text.hpp>
 #include <samewhere/report/page_data.hpp>
@@ -52,6 +53,19 @@ TEST(ReportHtml, HoldsItsLibrariesAndAsksForNothingFromOutside) {
        {"<script src", "<img src=\"http", "@import", "url(http", "<!-- include"})
     EXPECT_EQ(html.find(outside), std::string::npos) << outside;
   EXPECT_EQ(count_of(html, "<script"), count_of(html, "</script>"));
+}
+
+TEST(ReportHtml, TakesADenseCloudAndLosesNothing) {
+  const std::string before = report_html(sample_record());
+  const std::vector<ColouredPoint> cloud(500, {{1.0F, 2.0F, 3.0F}, {10, 20, 30}});
+  const std::string after = with_dense_cloud(with_dense_cloud(before, {}), cloud);
+  json run = json::parse(block(after, "run"));
+  EXPECT_EQ(run.at("dense").at("num_in_map"), 500);
+  run.erase("dense");
+  EXPECT_EQ(run, json::parse(block(before, "run")));
+  EXPECT_EQ(block(after, "pictures"), block(before, "pictures"));
+  EXPECT_EQ(block(after, "durations"), block(before, "durations"));
+  EXPECT_THROW(with_dense_cloud("<html></html>", cloud), core::InputError);
 }
 
 TEST(ReportHtml, HoldsWhatTheRunFound) {

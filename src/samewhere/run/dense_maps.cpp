@@ -18,6 +18,7 @@
 #include <samewhere/dense/stereo_depth.hpp>
 #include <samewhere/dense/view.hpp>
 #include <samewhere/dense/voxel_cloud.hpp>
+#include <samewhere/report/html.hpp>
 #include <samewhere/report/ply.hpp>
 #include <samewhere/run/dense_maps.hpp>
 #include <samewhere/run/run_lists.hpp>
@@ -185,10 +186,24 @@ std::filesystem::path description_of(const DenseFiles& files) {
   return description += ".yaml";
 }
 
-void write_cloud(const std::vector<dense::CloudPoint>& cloud, const DenseFiles& files, Made& made) {
+// Optional: the maps are made without.
+void add_to_report(const std::vector<report::ColouredPoint>& points,
+                   const std::filesystem::path& page) try {
+  if (!core::is_there(page)) return;
+  core::replace_file(page, report::with_dense_cloud(core::read_file(page), points));
+} catch (const core::InputError& error) {
+  spdlog::warn("{}: {}; the page lacks the cloud", page.string(), error.what());
+}
+
+std::vector<report::ColouredPoint> coloured_points(const std::vector<dense::CloudPoint>& cloud) {
   std::vector<report::ColouredPoint> points;
   points.reserve(cloud.size());
   for (const auto& point : cloud) points.push_back({point.in_world, point.rgb});
+  return points;
+}
+
+void write_cloud(const std::vector<report::ColouredPoint>& points, const DenseFiles& files,
+                 Made& made) {
   made.files.add(files.cloud, report::ply_bytes(points));
   made.outcome.figures.push_back(
       {"cloud", fmt::format("{}, {} points", files.cloud.string(), points.size())});
@@ -247,7 +262,7 @@ DenseOutcome make_dense_maps(const std::filesystem::path& run, const pipeline::C
   Made made;
   made.outcome.figures.push_back({"keyframes", std::to_string(fused->cameras.size())});
   const std::vector<dense::CloudPoint> cloud = fused->cloud.points();
-  if (!files.cloud.empty()) write_cloud(cloud, files, made);
+  if (!files.cloud.empty()) write_cloud(coloured_points(cloud), files, made);
   if (!files.octree.empty()) {
     const std::string bytes = fused->octree.bt_bytes();
     made.files.add(files.octree, bytes);
@@ -256,6 +271,7 @@ DenseOutcome make_dense_maps(const std::filesystem::path& run, const pipeline::C
   }
   if (!files.grid.empty()) write_grid(*fused, cloud, config, files, made);
   publish(made, files);
+  if (!files.cloud.empty()) add_to_report(coloured_points(cloud), run / "report.html");
   return std::move(made.outcome);
 }
 

@@ -17,10 +17,11 @@
     box.checked = isShown;
     state.set('layers', { ...state.get('layers'), [name]: isShown });
     const sample = element('i', { class: `line ${name}` });
-    byId('layers').append(element('label', {}, box, name === 'points' ? null : sample, text));
+    byId('layers').append(element('label', {}, box, name === 'points' || name === 'dense' ? null : sample, text));
   }
   function addLayers(run, state) {
     if (run.points.positions.length || run.is_live) addLayer(state, 'points', 'landmarks', true);
+    if (run.dense) addLayer(state, 'dense', 'dense cloud', true);
     if (run.odometry.times.length) addLayer(state, 'odometry', 'odometry alone', true);
     if (run.truth.times.length) addLayer(state, 'truth', 'ground truth', true);
     if (run.covariances.length) addLayer(state, 'ellipses', 'covariance', false);

@@ -92,6 +92,7 @@
       this.odometry = this.path(data.odometry);
       this.truth = this.path(data.truth);
       this.points = { positions: this.axes.positions(unpacked(data.points.positions)), colours: unpacked(data.points.colours), numInMap: data.points.num_in_map };
+      this.dense = data.dense ? { positions: this.axes.positions(unpacked(data.dense.positions)), colours: unpacked(data.dense.colours) } : null;
       this.durations_ms = unpacked(durations.frames_ms);
       this.stages = durations.stages;
       this.memory = durations.memory ? { frames: unpacked(durations.memory.frames), mib: unpacked(durations.memory.mib) } : { frames: [], mib: [] };

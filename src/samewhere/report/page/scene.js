@@ -149,6 +149,7 @@
     build() {
       this.scene.background = new THREE.Color(samewhere.css('scene'));
       this.buildPoints();
+      if (this.run.dense) this.buildPoints('dense');
       this.buildGround();
       this.buildPath();
       this.buildOtherPaths();
@@ -175,20 +176,20 @@
       this.showLayers();
     }
 
-    buildPoints() {
-      const { positions, colours } = this.run.points;
+    buildPoints(name = 'points') {
+      const { positions, colours } = this.run[name];
       const geometry = new THREE.BufferGeometry();
       if (this.isSlow && positions.length > 3 * kMaxSlowPoints) {
         const step = Math.ceil(positions.length / 3 / kMaxSlowPoints);
         geometry.setIndex(Array.from({ length: Math.floor(positions.length / 3 / step) }, (_, i) => i * step));
-        this.note = `Drawn without a graphics card: 1 of ${step} landmarks. `;
+        this.note = `Drawn without a graphics card: 1 of ${step} ${name === 'points' ? 'landmarks' : 'points'}. `;
       }
       geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3, true));
       const shade = Number(samewhere.css('point-shade')) || 1;
       const material = new THREE.PointsMaterial({ size: 2 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: THREE.VertexColors, clippingPlanes: this.clip });
       material.color.setRGB(shade, shade, shade);
-      this.replace('points', new THREE.Points(geometry, material));
+      this.replace(name, new THREE.Points(geometry, material));
     }
 
     buildGround() {
@@ -362,7 +363,7 @@
 
     showLayers() {
       const layers = this.state.get('layers');
-      for (const name of ['points', 'odometry', 'truth', 'ellipses', 'ground']) {
+      for (const name of ['points', 'dense', 'odometry', 'truth', 'ellipses', 'ground']) {
         if (this[name]) this[name].visible = layers[name] !== false;
       }
       this.render();
