@@ -80,7 +80,7 @@ endfunction()
 set(samewhere_asan_tests core input scene features dense describe)
 list(TRANSFORM samewhere_asan_tests REPLACE "(.+)" "samewhere_\\1_test")
 list(APPEND samewhere_asan_tests cli_test formats_test fuzz_corpus_test)
-set(samewhere_tsan_tests samewhere_core_test samewhere_input_test recognition_threads_test slam_threads_test)
+set(samewhere_tsan_tests samewhere_core_test samewhere_input_test samewhere_view_test recognition_threads_test slam_threads_test)
 # run first, because they take longest
 set(samewhere_long_tests golden_test cli_walks_test samewhere_pipeline_test cli_test slam_threads_test)
 foreach(label asan tsan plain)
