@@ -8,14 +8,11 @@
 
 #include <samewhere/core/rig.hpp>
 #include <samewhere/core/rigid3.hpp>
+#include <samewhere/evaluate/depth_places.hpp>
 
 namespace samewhere::bench {
 
-// Depth along the optical axis, metres, exact at every pixel, and where it was seen from.
-struct DepthView {
-  cv::Mat depth_m;  // CV_32F
-  core::Rigid3 world_from_camera;
-};
+using evaluate::DepthView;  // its depth is exact at every pixel
 
 // Depth between the centres of pixels, by inverse depth, which is linear on a plane; nothing
 // outside the picture and where surfaces meet.

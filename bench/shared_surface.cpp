@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include <samewhere/geometry/camera.hpp>
+#include <samewhere/evaluate/depth_places.hpp>
 
 namespace samewhere::bench {
 namespace {
@@ -13,10 +13,6 @@ namespace {
 constexpr int kCoarseGrid = 24;  // rows and columns
 constexpr int kFineGrid = 96;    // of the kNumLooked likeliest by the coarse one
 constexpr std::size_t kNumLooked = 30;
-constexpr std::size_t kMinPoints = 30;
-// A point that the other view sees nearer or farther by more is another one.
-constexpr double kMaxApart_m = 0.05;
-constexpr double kMaxApartRatio = 0.04;
 // The same place: so much is shared, and both look so much the same way.
 constexpr double kSameShare = 0.3;
 constexpr double kSameAngle_rad = std::numbers::pi / 4.0;
@@ -25,40 +21,6 @@ constexpr double kShareSigma = 0.05;
 constexpr double kAngleSigma_rad = 2.0 * std::numbers::pi / 180.0;
 
 using Points = std::vector<Eigen::Vector3d>;
-
-Points points_of(const cv::Mat& depth_m, const core::Camera& camera, int grid) {
-  Points points;
-  for (int row = 0; row < grid; ++row) {
-    for (int column = 0; column < grid; ++column) {
-      const int x = (2 * column + 1) * depth_m.cols / (2 * grid);
-      const int y = (2 * row + 1) * depth_m.rows / (2 * grid);
-      const double z_m = depth_m.at<float>(y, x);
-      if (z_m <= 0.0) continue;
-      const Eigen::Vector3d bearing = geometry::bearing(camera, Eigen::Vector2d(x, y));
-      points.push_back(bearing * (z_m / bearing.z()));
-    }
-  }
-  return points;
-}
-
-// Of the points that one view shows, so many are seen by the other.
-double share_seen(const Points& points, const core::Rigid3& other_from_view, const cv::Mat& depth_m,
-                  const core::Camera& camera) {
-  if (points.size() < kMinPoints) return 0.0;
-  int num_seen = 0;
-  for (const Eigen::Vector3d& point : points) {
-    const Eigen::Vector3d there = other_from_view * point;
-    const auto pixel = geometry::project(camera, there);
-    if (!pixel || pixel->x() < 0.0 || pixel->y() < 0.0 || pixel->x() > depth_m.cols - 1.0 ||
-        pixel->y() > depth_m.rows - 1.0)
-      continue;
-    const double seen_m = depth_m.at<float>(static_cast<int>(std::lround(pixel->y())),
-                                            static_cast<int>(std::lround(pixel->x())));
-    if (seen_m > 0.0 && std::abs(seen_m - there.z()) <= kMaxApart_m + kMaxApartRatio * there.z())
-      ++num_seen;
-  }
-  return static_cast<double>(num_seen) / static_cast<double>(points.size());
-}
 
 // Of a normal number with mean `value` to be larger than `bar`.
 double likeliness_above(double value, double bar, double sigma) {
@@ -70,8 +32,8 @@ double likeliness_above(double value, double bar, double sigma) {
 SurfaceView surface_view(int frame, const cv::Mat& depth_m, const core::Camera& camera) {
   return {.frame = frame,
           .seen = {depth_m, {}},
-          .coarse = points_of(depth_m, camera, kCoarseGrid),
-          .fine = points_of(depth_m, camera, kFineGrid)};
+          .coarse = evaluate::surface_points(depth_m, camera, kCoarseGrid),
+          .fine = evaluate::surface_points(depth_m, camera, kFineGrid)};
 }
 
 SharedSurface shared_surface(const SurfaceView& a, const SurfaceView& b, const core::Camera& camera,
@@ -80,8 +42,8 @@ SharedSurface shared_surface(const SurfaceView& a, const SurfaceView& b, const c
   const double cosine = (b_from_a.rotation * Eigen::Vector3d::UnitZ()).z();
   const double angle_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
   if (angle_rad > 2.0 * kSameAngle_rad) return {};
-  const double there = share_seen(a.*points, b_from_a, b.seen.depth_m, camera);
-  const double back = share_seen(b.*points, inverse(b_from_a), a.seen.depth_m, camera);
+  const double there = evaluate::share_seen(a.*points, b_from_a, b.seen.depth_m, camera);
+  const double back = evaluate::share_seen(b.*points, inverse(b_from_a), a.seen.depth_m, camera);
   return {.share = std::min(there, back),
           .likeliness = likeliness_above(there, kSameShare, kShareSigma) *
                         likeliness_above(back, kSameShare, kShareSigma) *

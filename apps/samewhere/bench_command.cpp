@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,18 +10,20 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 #include "commands.hpp"
 #include "options.hpp"
+#include "start_program.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/core/terminal.hpp>
+#include <samewhere/paper/benchmark.hpp>
 #include <samewhere/paper/blind_spot.hpp>
-#include <samewhere/paper/curves.hpp>
-#include <samewhere/paper/described_recording.hpp>
-#include <samewhere/paper/runs.hpp>
+#include <samewhere/paper/page.hpp>
 #include <samewhere/paper/tables.hpp>
 #include <samewhere/paper/view_pool.hpp>
 
@@ -28,157 +32,200 @@ namespace {
 
 struct PaperCommand {
   std::vector<std::string> sources;
-  std::string tables = "2,3";
-  std::string describers;
-  std::string out;
+  std::string tables = "2-8";
+  std::vector<std::string> methods;
+  std::string out = "paper";
+  int num_seeds = 5;
+  int num_slam_runs = 3;
+  bool is_quick = false;
+  bool is_fresh = false;
   int blind_spot_views = 0;
   ConfigOptions config{.profile = "paper", .file = "", .assignments = {}};
 };
 
-// What a command has measured so far, on the terminal and in its folder.
-class PaperOutput {
+// The rendered sequences that are measured where none is named.
+constexpr std::array<const char*, 4> kTwins = {
+    "twin:twin-corridors?seed=1000@10s", "twin:office-loop?seed=1000@10s",
+    "twin:second-visit?seed=1000@10s", "twin:mirror?seed=1000@10s"};
+
+std::vector<std::string> default_sources(bool is_quick) {
+  if (is_quick) return {kTwins.begin() + 1, kTwins.begin() + 2};
+  return {kTwins.begin(), kTwins.end()};
+}
+
+paper::BenchmarkPlan plan_of(const PaperCommand& command) {
+  paper::BenchmarkPlan plan{.config = load(command.config),
+                            .sources = command.sources,
+                            .methods = command.methods,
+                            .is_strict = !command.sources.empty(),
+                            .tables = paper::parse_table_numbers(command.tables),
+                            .searches = {},
+                            .num_slam_runs = command.num_slam_runs};
+  if (plan.sources.empty()) plan.sources = default_sources(command.is_quick);
+  if (plan.methods.empty()) plan.methods = paper::all_methods();
+  plan.searches.num_seeds = command.num_seeds;
+  if (!command.is_quick) return plan;
+  plan.searches = {.num_draws = {10, 50, 70}, .num_seeds = 2};
+  plan.num_slam_runs = 1;
+  return plan;
+}
+
+// What makes the same results again.
+std::string command_line(const PaperCommand& command) {
+  std::string line = "samewhere bench paper";
+  for (const std::string& source : command.sources) line += fmt::format(" '{}'", source);
+  if (command.is_quick) line += " --quick";
+  line += " --tables " + command.tables;
+  if (!command.methods.empty())
+    line += fmt::format(" --methods {}", fmt::join(command.methods, ","));
+  for (const std::string& assignment : command.config.assignments)
+    line += fmt::format(" --set {}", assignment);
+  return line;
+}
+
+// The files of the results folder.
+class PaperFolder {
  public:
-  PaperOutput(const std::string& folder, paper::PaperTableNumbers numbers)
-      : folder_(folder), numbers_(std::move(numbers)) {
-    if (!folder.empty()) core::make_writable_folder(folder_);
+  PaperFolder(const PaperCommand& command, paper::PaperTableNumbers numbers)
+      : folder_(command.out), numbers_(std::move(numbers)), command_(command_line(command)) {}
+
+  void write(const paper::Results& results) const {
+    std::string text;
+    const auto tables = paper::make_tables(results, numbers_);
+    for (const paper::PaperTable& table : tables) text += paper::as_text(table) + "\n";
+    core::write_file(folder_ / "tables.txt", text);
+    core::write_file(folder_ / "recognition.csv", paper::recognition_csv(results));
+    core::write_file(folder_ / "slam.csv", paper::slam_csv(results));
+    core::write_file(folder_ / "results.json", paper::results_json(results).dump(1) + "\n");
+    core::write_file(folder_ / "paper.html",
+                     paper::page_html(results, tables, figures(), command_));
   }
 
-  void add(const paper::PaperBlock& block) {
-    say(paper::paper_text(block, numbers_) + "\n");
-    blocks_.push_back(block);
-    write("searches.csv", paper::searches_csv(blocks_));
-    write("times.csv", paper::times_csv(blocks_));
+  // By the Python package, if there is one.
+  void draw() const {
+    if (const auto why = run_python("samewhere.paper", {folder_.string()}))
+      spdlog::warn("the figures are not drawn: {}; they need python3-matplotlib (Debian)", *why);
   }
 
-  // The blocks of one recording.
-  void add_curves(const std::vector<paper::PaperBlock>& blocks) const {
-    const paper::PaperBlock& any = blocks.front();
-    write("pr-" + paper::file_stem(any.recording, any.window_frames) + ".svg",
-          paper::curves_svg(blocks));
-  }
-
-  void add(const std::vector<paper::BlindSpotPoint>& points, const retrieve::Config& config) {
-    say(paper::blind_spot_sentence(points, config.num_draws) + "\n");
-    write("blind-spot.csv", paper::blind_spot_csv(points));
-    write("blind-spot.svg", paper::blind_spot_svg(points, config));
-  }
+  std::filesystem::path page() const { return folder_ / "paper.html"; }
 
  private:
-  void say(const std::string& text) {
-    core::print("{}", text);
-    std::fflush(stdout);
-    text_ += text;
-    write("tables.txt", text_);
+  std::vector<paper::PageFigure> figures() const {
+    const std::filesystem::path list = folder_ / "figures" / "figures.json";
+    if (!core::is_there(list)) return {};
+    std::vector<paper::PageFigure> figures;
+    for (const auto& figure : nlohmann::json::parse(core::read_file(list))) {
+      const auto file = folder_ / "figures" / figure.at("file").get<std::string>();
+      figures.push_back({figure.at("title"), core::read_file(file)});
+    }
+    return figures;
   }
 
-  void write(const std::string& name, const std::string& content) const {
-    if (!folder_.empty()) core::write_file(folder_ / name, content);
-  }
-
-  std::filesystem::path folder_;  // empty: nothing is written
+  std::filesystem::path folder_;
   paper::PaperTableNumbers numbers_;
-  std::vector<paper::PaperBlock> blocks_;
-  std::string text_;
+  std::string command_;
 };
 
-std::vector<pipeline::Config> configs_of(const PaperCommand& command,
-                                         const pipeline::Config& config) {
-  std::vector<pipeline::Config> configs;
-  for (const std::string& source : command.sources)
-    configs.push_back(paper::with_source(config, source));
-  return configs;
-}
-
-// The pool for stores of up to this many views, 0: none is wanted.
-std::optional<paper::ViewPoolMaker> pool_maker(int num_views,
-                                               const std::vector<paper::OpenRecording>& recordings,
-                                               describe::Describer& describer) {
+// The pool for stores of up to this many views.
+std::optional<paper::ViewPool> blind_spot_pool(const PaperCommand& command,
+                                               const paper::BenchmarkPlan& plan) {
   constexpr int kNumQueries = 200;
-  if (num_views == 0) return std::nullopt;
-  int num_frames = 0;
-  for (const auto& recording : recordings) num_frames += recording.num_frames;
-  return std::optional<paper::ViewPoolMaker>(
-      std::in_place, describer, num_frames,
-      paper::PoolSize{.num_stored = num_views, .num_queries = kNumQueries});
+  std::vector<pipeline::Config> configs;
+  for (const std::string& source : plan.sources)
+    configs.push_back(paper::with_source(plan.config, source));
+  const auto by = paper::make_named_describer(paper::kPaperMethod, plan.config);
+  return paper::make_view_pool(
+      configs, *by.describer, {.num_stored = command.blind_spot_views, .num_queries = kNumQueries});
 }
 
 // False: interrupted.
-bool measure_tables(paper::OpenRecording opened,
-                    const std::vector<paper::NamedDescriber>& describers,
-                    const paper::SeePicture& also_see, PaperOutput& output) {
-  const pipeline::Config config = opened.config;
-  const auto recording = paper::describe_recording(std::move(opened), describers, also_see);
-  if (!recording) return false;
-  std::vector<paper::PaperBlock> blocks;
-  for (const auto& views : recording->by_describer) {
-    const auto block = paper::run_paper_plan(*recording, views, config, {});
-    if (!block) return false;
-    output.add(*block);
-    blocks.push_back(*block);
-  }
-  output.add_curves(blocks);
-  return true;
-}
-
-// False: interrupted.
-bool measure_blind_spot(const paper::ViewPool& pool, const retrieve::Config& search,
-                        PaperOutput& output) {
+bool measure_blind_spot(const PaperCommand& command, const paper::BenchmarkPlan& plan) {
+  const auto pool = blind_spot_pool(command, plan);
+  if (!pool) return false;
+  const retrieve::Config& search = plan.config.retrieve;
   std::vector<int> num_draws{10, search.num_draws, 70};
   std::sort(num_draws.begin(), num_draws.end());
   num_draws.erase(std::unique(num_draws.begin(), num_draws.end()), num_draws.end());
-  const auto points = paper::measure_blind_spot(pool, search, num_draws);
-  if (points) output.add(*points, search);
-  return points.has_value();
+  const auto points = paper::measure_blind_spot(*pool, search, num_draws);
+  if (!points) return false;
+  const std::filesystem::path folder = command.out;
+  core::print("{}\n", paper::blind_spot_sentence(*points, search.num_draws));
+  core::write_file(folder / "blind-spot.csv", paper::blind_spot_csv(*points));
+  core::write_file(folder / "blind-spot.svg", paper::blind_spot_svg(*points, search));
+  return true;
 }
 
 int execute(const PaperCommand& command) {
   core::catch_interrupts();
-  const paper::PaperTableNumbers numbers = paper::parse_table_numbers(command.tables);
-  const pipeline::Config config = load(command.config);
-  const auto describers = paper::make_describers(command.describers, config);
-  // all are open, and so known to be of use, before any work is done
-  auto recordings = paper::open_recordings(configs_of(command, config));
-  auto maker = pool_maker(command.blind_spot_views, recordings, *describers.front().describer);
-  const paper::SeePicture to_pool = [&](const cv::Mat& picture) {
-    if (maker) maker->add(picture);
-  };
-  PaperOutput output(command.out, numbers);
-  for (auto& recording : recordings) {
-    if (!measure_tables(std::move(recording), describers, to_pool, output))
-      return core::kInterruptedExit;
-  }
-  if (!maker) return core::kDone;
-  const paper::ViewPool pool = std::move(*maker).pool();
-  return measure_blind_spot(pool, config.retrieve, output) ? core::kDone : core::kInterruptedExit;
+  const paper::BenchmarkPlan plan = plan_of(command);
+  paper::check_plan(plan);
+  const std::filesystem::path rows = std::filesystem::path(command.out) / "rows";
+  if (command.is_fresh) std::filesystem::remove_all(rows);
+  const paper::RowStore store(rows);
+  const PaperFolder folder(command, plan.tables);
+  paper::Results results;
+  const bool is_done = paper::run_benchmark(
+      plan, store, results, [&](const paper::Results& so_far) { folder.write(so_far); });
+  folder.write(results);
+  folder.draw();
+  folder.write(results);  // with the figures
+  for (const paper::PaperTable& table : paper::make_tables(results, plan.tables))
+    core::print("{}\n", paper::as_text(table));
+  if (!is_done) return core::kInterruptedExit;
+  if (command.blind_spot_views > 0 && !measure_blind_spot(command, plan))
+    return core::kInterruptedExit;
+  core::print("{}\n", folder.page().string());
+  return core::kDone;
+}
+
+void add_options(CLI::App& sub, PaperCommand& command) {
+  sub.add_option(
+      "SOURCE", command.sources,
+      "recordings and twin: buildings, each with the window of its protocol in frames or "
+      "seconds: kitchen@149, twin:hotel@10s; without any, the data sets found below "
+      "SAMEWHERE_DATA and four rendered sequences");
+  sub.add_option(
+         "--tables", command.tables,
+         "2: AUC by number of draws, 3: milliseconds, 4 and 5: the same by method, 6: loops "
+         "right and wrong, 7: trajectory error, 8: frames per second")
+      ->capture_default_str();
+  sub.add_option("--methods", command.methods,
+                 fmt::format("{}, or ONNX files; without it all of them",
+                             fmt::join(paper::all_methods(), ", ")))
+      ->delimiter(',');
+  sub.add_option("--seeds", command.num_seeds, "repetitions of the sampled search")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub.add_option("--runs", command.num_slam_runs, "repetitions of SLAM, which differ by seed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub.add_flag("--quick", command.is_quick,
+               "one rendered sequence unless some are named, two seeds, one run of SLAM: ten "
+               "minutes");
+  sub.add_flag("--fresh", command.is_fresh,
+               "measure anew what an earlier run left in the folder's rows");
+  sub.add_option("--blind-spot", command.blind_spot_views,
+                 "also the probability that the search misses the true queue, in stores of up to "
+                 "this many views (all sources and crops of them), e.g. 10000")
+      ->check(CLI::Range(100, 1'000'000));
+  sub.add_option(
+         "--out", command.out,
+         "folder for the results: paper.html, tables.txt, CSV, results.json, figures as SVG "
+         "and PDF; a later run goes on with what is missing")
+      ->capture_default_str();
+  add_config_options(sub, command.config);
 }
 
 void add_paper_command(CLI::App& bench, int& exit_code) {
   auto command = std::make_shared<PaperCommand>();
   CLI::App* sub = bench.add_subcommand(
-      "paper", "The tables of the published method on recordings with place truth");
-  sub->add_option("SOURCE", command->sources,
-                  "recordings and twin: buildings, each with the window of its protocol in frames "
-                  "or seconds: kitchen@149, twin:hotel@10s")
-      ->required();
-  sub->add_option("--tables", command->tables,
-                  "2: AUC by number of draws, 3: milliseconds, 6: true and false loops")
-      ->capture_default_str();
-  sub->add_option("--describers", command->describers,
-                  "hog and ONNX files, separated by commas, all on the same frames and searches; "
-                  "without it describe.method");
-  sub->add_option("--blind-spot", command->blind_spot_views,
-                  "also the probability that the search misses the true queue, in stores of up to "
-                  "this many views (all sources and crops of them), e.g. 10000")
-      ->check(CLI::Range(100, 1'000'000));
-  sub->add_option(
-      "--out", command->out,
-      "folder for the results as CSV and the curves as SVG, one for each recording; without it "
-      "none is written");
-  add_config_options(*sub, command->config);
+      "paper", "The tables and figures of the published method, beside other methods");
+  add_options(*sub, *command);
   sub->footer(
       "Examples:\n"
-      "  samewhere bench paper kitchen@149 office@60 --tables 2,3,6 --out tables\n"
-      "  samewhere bench paper kitchen@149 --describers hog,autoencoder.onnx");
+      "  samewhere bench paper --quick\n"
+      "  SAMEWHERE_DATA=~/data samewhere bench paper\n"
+      "  samewhere bench paper kitchen@149 office@60 --tables 2-5 --methods paper,hog,ours");
   sub->callback([command, &exit_code] { exit_code = execute(*command); });
 }
 
@@ -187,7 +234,7 @@ void add_paper_command(CLI::App& bench, int& exit_code) {
 void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand("bench", "Benchmark a method on several recordings");
   sub->require_subcommand(1);
-  sub->footer("Example: samewhere bench paper kitchen@149 (see samewhere bench paper --help)");
+  sub->footer("Example: samewhere bench paper --quick (see samewhere bench paper --help)");
   add_paper_command(*sub, exit_code);
 }
 

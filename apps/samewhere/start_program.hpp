@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,5 +11,11 @@ namespace samewhere::app {
 // cannot be started.
 [[noreturn]] void start_program(const std::string& name, std::vector<std::string> arguments,
                                 const std::string& command, const std::string& advice);
+
+// Runs `python3 -m MODULE ARGUMENTS...` with the Python package of this program's build or
+// installation, and waits. What it prints is dropped. Nothing if it succeeds, else which command
+// tells why not.
+std::optional<std::string> run_python(const std::string& module,
+                                      const std::vector<std::string>& arguments);
 
 }  // namespace samewhere::app

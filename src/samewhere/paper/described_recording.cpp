@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -11,6 +10,8 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/timing.hpp>
+#include <samewhere/evaluate/depth_places.hpp>
+#include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/paper/described_recording.hpp>
 #include <samewhere/paper/spread.hpp>
@@ -21,43 +22,46 @@ namespace {
 
 constexpr const char* kHogName = "hog";
 constexpr int kMaxTimed = 400;
+constexpr std::string_view kTwin = "twin:";
 
 std::string network_name(const std::string& file) {
   return std::filesystem::path(file).stem().string();
 }
 
-std::string configured_name(const describe::Config& config) {
-  return config.method == describe::Method::kHog ? kHogName : network_name(config.network);
+// What the frames of a recording with depth see, from where they truly are. Empty if the first of
+// them has no depth. Throws Interrupted after Ctrl-C.
+std::vector<std::optional<evaluate::DepthView>> depth_views(core::Source& source,
+                                                            const core::Trajectory& trajectory,
+                                                            std::optional<core::Camera>& camera) {
+  core::Progress progress(source.info().name + ": depth read", source.info().num_frames);
+  std::vector<std::optional<evaluate::DepthView>> views;
+  while (const std::optional<core::Frame> frame = source.next()) {
+    core::stop_if_interrupted();
+    if (!camera && (!frame->depth_m || !frame->rig)) return {};
+    if (!camera) camera = frame->rig->cameras.front();
+    const auto pose = evaluate::truth_at(trajectory, frame->stamp_s);
+    views.emplace_back();
+    if (pose && frame->depth_m) views.back() = evaluate::DepthView{frame->depth_m->clone(), *pose};
+    progress.update(static_cast<int>(views.size()));
+  }
+  return views;
 }
 
-NamedDescriber named_describer(const std::string& word, describe::Config config) {
-  if (!word.empty()) {
-    config.method = word == kHogName ? describe::Method::kHog : describe::Method::kAutoencoder;
-    if (word != kHogName) config.network = word;
-  }
-  return {configured_name(config), describe::make_describer(config)};
-}
-
-std::vector<std::string> split_at_commas(const std::string& list) {
-  std::vector<std::string> words(1);
-  for (const char c : list) {
-    if (c == ',') {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  return words;
+[[noreturn]] void complain_of_no_places(const pipeline::Config& config) {
+  throw core::InputError(fmt::format(
+      "{}: nothing says which of its frames show the same place; expected same_place.pgm or "
+      "same_place.txt beside the images, depth and true poses, or a twin building of a short walk",
+      config.source));
 }
 
 core::Truth place_truth(const core::Source& source, const pipeline::Config& config) {
   core::Truth truth = source.truth();
-  if (!truth.places) {
-    throw core::InputError(fmt::format(
-        "{}: nothing says which of its frames show the same place; expected same_place.pgm or "
-        "same_place.txt beside the images, or a twin building of a short walk",
-        config.source));
+  if (!truth.places && source.info().has_depth && !truth.trajectory.empty()) {
+    std::optional<core::Camera> camera;
+    const auto views = depth_views(*run::open_source(config), truth.trajectory, camera);
+    if (camera) truth.places = evaluate::places_from_depth(views, *camera);
   }
+  if (!truth.places) complain_of_no_places(config);
   return truth;
 }
 
@@ -79,27 +83,10 @@ std::vector<double> description_times_ms(const std::vector<KeptPicture>& kept,
   return kept.empty() ? std::vector<double>() : timings.durations_ms().at(kDescribe);
 }
 
-// The spec tells two twins of one preset apart; the name of a folder is enough for a recording.
-std::string recording_name(const pipeline::Config& config, const core::SourceInfo& info) {
-  constexpr std::string_view kTwin = "twin:";
-  return config.source.starts_with(kTwin) ? config.source.substr(kTwin.size()) : info.name;
-}
-
-OpenRecording open_recording(const pipeline::Config& config) {
-  auto source = run::open_source_with_truth(config);
-  const core::SourceInfo info = source->info();
-  core::Truth truth = place_truth(*source, config);
-  return {.config = run::with_window_in_frames(config, info),
-          .name = recording_name(config, info),
-          .num_frames = info.num_frames,
-          .source = std::move(source),
-          .truth = std::move(truth)};
-}
-
 // Reads all of it; returns the pictures to be timed. Nothing after Ctrl-C.
 std::optional<std::vector<KeptPicture>> read_and_describe(
     OpenRecording& recording, const std::vector<NamedDescriber>& describers,
-    const SeePicture& also_see, DescribedRecording& described) {
+    const SeeFrame& also_see, DescribedRecording& described) {
   const int num_timed = std::min(recording.num_frames, kMaxTimed);
   const auto source = input::prefetched(std::move(recording.source));
   core::Progress progress(recording.name + ": frames described", recording.num_frames);
@@ -112,7 +99,7 @@ std::optional<std::vector<KeptPicture>> read_and_describe(
       described.by_describer[i].views.push_back(
           describers[i].describer->describe(frame->id, picture));
     }
-    if (also_see) also_see(picture);
+    if (also_see) also_see(*frame);
     if (num_spread_on(num_done, recording.num_frames, num_timed) > 0)
       kept.push_back({frame->id, picture.clone()});
     progress.update(++num_done);
@@ -122,22 +109,13 @@ std::optional<std::vector<KeptPicture>> read_and_describe(
 
 }  // namespace
 
-std::vector<NamedDescriber> make_describers(const std::string& list,
-                                            const pipeline::Config& config) {
-  std::vector<NamedDescriber> describers;
-  std::set<std::string> names;
-  for (const std::string& word : split_at_commas(list)) {
-    if (word.empty() && !list.empty())
-      throw core::InputError(
-          fmt::format("--describers {}: expected hog or ONNX files, separated by commas", list));
-    describers.push_back(named_describer(word, config.describe));
-    if (!names.insert(describers.back().name).second) {
-      throw core::InputError(
-          fmt::format("--describers {}: two are called {}, expected a different name for each",
-                      list, describers.back().name));
-    }
-  }
-  return describers;
+NamedDescriber make_named_describer(const std::string& word, const pipeline::Config& given) {
+  describe::Config config = given.describe;
+  if (word == kPaperMethod) return {word, describe::make_describer(config)};
+  const bool is_hog = word == kHogName;
+  config.method = is_hog ? describe::Method::kHog : describe::Method::kAutoencoder;
+  if (!is_hog) config.network = word;
+  return {is_hog ? word : network_name(word), describe::make_describer(config)};
 }
 
 pipeline::Config with_source(pipeline::Config config, const std::string& source_at_window) {
@@ -156,25 +134,16 @@ pipeline::Config with_source(pipeline::Config config, const std::string& source_
   return config;
 }
 
-std::vector<OpenRecording> open_recordings(const std::vector<pipeline::Config>& configs) {
-  std::vector<OpenRecording> recordings;
-  std::set<std::string> stems;
-  for (const pipeline::Config& config : configs) {
-    recordings.push_back(open_recording(config));
-    const OpenRecording& last = recordings.back();
-    const int window_frames = last.config.retrieve.window_frames;
-    if (!stems.insert(file_stem(last.name, window_frames)).second) {
-      throw core::InputError(fmt::format(
-          "{}: two recordings are called {} with a window of {} frames, expected a different name "
-          "or window for each",
-          config.source, last.name, window_frames));
-    }
-  }
-  return recordings;
+std::string recording_name(const pipeline::Config& config) {
+  if (config.source.starts_with(kTwin)) return config.source.substr(kTwin.size());
+  return (std::filesystem::path(config.source) / "").parent_path().filename().string();
 }
 
-std::string file_stem(const std::string& recording, int window_frames) {
-  std::string stem = fmt::format("{}-{}", recording, window_frames);
+std::string file_stem(const pipeline::Config& config) {
+  const int frames = config.retrieve.window_frames;
+  std::string stem =
+      frames >= 0 ? fmt::format("{}-{}", recording_name(config), frames)
+                  : fmt::format("{}-{:g}s", recording_name(config), config.retrieve.window_s);
   for (char& c : stem) {
     const bool is_plain =
         std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
@@ -183,9 +152,27 @@ std::string file_stem(const std::string& recording, int window_frames) {
   return stem;
 }
 
+void require_place_truth(const core::Source& source, const pipeline::Config& config) {
+  if (config.source.starts_with(kTwin)) return;
+  const core::Truth truth = source.truth();
+  const bool has_places = truth.places || (source.info().has_depth && !truth.trajectory.empty());
+  if (!has_places) complain_of_no_places(config);
+}
+
+OpenRecording open_recording(const pipeline::Config& config) {
+  auto source = run::open_source_with_truth(config);
+  const core::SourceInfo info = source->info();
+  core::Truth truth = place_truth(*source, config);
+  return {.config = run::with_window_in_frames(config, info),
+          .name = recording_name(config),
+          .num_frames = info.num_frames,
+          .source = std::move(source),
+          .truth = std::move(truth)};
+}
+
 std::optional<DescribedRecording> describe_recording(OpenRecording recording,
                                                      const std::vector<NamedDescriber>& describers,
-                                                     const SeePicture& also_see) {
+                                                     const SeeFrame& also_see) {
   DescribedRecording described{.name = recording.name,
                                .window_frames = recording.config.retrieve.window_frames,
                                .truth = std::move(recording.truth),

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <opencv2/core/mat.hpp>
-
 #include <samewhere/core/descriptor.hpp>
+#include <samewhere/core/frame.hpp>
 #include <samewhere/core/source.hpp>
 #include <samewhere/core/truth.hpp>
 #include <samewhere/describe/describer.hpp>
@@ -23,16 +22,23 @@ struct NamedDescriber {
   std::shared_ptr<describe::Describer> describer;
 };
 
-// "hog", an ONNX file, or several separated by commas; empty: the one of the config. A network is
-// called by its file, without folder and extension. Throws InputError on a network that cannot be
-// used, and on two describers of one name.
-std::vector<NamedDescriber> make_describers(const std::string& list,
-                                            const pipeline::Config& config);
+// The name of the published method among the describers: the one that the config has.
+inline constexpr const char* kPaperMethod = "paper";
+
+// By a word: "paper" is the describer of the config; "hog"; or an ONNX file, which is called by its
+// name without folder and extension. Throws InputError on a network that cannot be used.
+NamedDescriber make_named_describer(const std::string& word, const pipeline::Config& config);
 
 // The config for "SOURCE", "SOURCE@149" or "SOURCE@10s": a recording or a twin building, and the
 // window of its protocol in frames or seconds, instead of the config's. Throws InputError on a
 // window that is out of range.
 pipeline::Config with_source(pipeline::Config config, const std::string& source_at_window);
+
+// How tables call the sequence of a config: a folder's name, or what a twin building was asked for.
+std::string recording_name(const pipeline::Config& config);
+
+// What files on this sequence are called: name and window, in letters, digits and -_. only.
+std::string file_stem(const pipeline::Config& config);
 
 // A recording whose loops are known, open and not yet read.
 struct OpenRecording {
@@ -43,14 +49,15 @@ struct OpenRecording {
   core::Truth truth;  // has places
 };
 
-// Opens each source once, and has its truth: what a twin building has to compute for that is
-// computed now. Throws InputError naming the source if it cannot be opened or its truth says
-// nothing about places, and on two recordings of one name and window, whose figures could
-// not be told apart; Interrupted after Ctrl-C.
-std::vector<OpenRecording> open_recordings(const std::vector<pipeline::Config>& configs);
+// Throws InputError naming the source if nothing about it tells which of its frames show the same
+// place. Rendered buildings are not asked: they have to compute it.
+void require_place_truth(const core::Source& source, const pipeline::Config& config);
 
-// What files on this recording are called: name and window, in letters, digits and -_. only.
-std::string file_stem(const std::string& recording, int window_frames);
+// Opens the source, and has its truth: what a twin building has to compute for that is computed
+// now; where nothing but depth and true poses tells of places, all depth is read for it
+// (evaluate/depth_places.hpp). Throws InputError naming the source if it cannot be opened or its
+// truth says nothing about places; Interrupted after Ctrl-C.
+OpenRecording open_recording(const pipeline::Config& config);
 
 // All views of a recording as one describer sees them.
 struct DescribedViews {
@@ -69,14 +76,14 @@ struct DescribedRecording {
   std::vector<DescribedViews> by_describer;
 };
 
-using SeePicture = std::function<void(const cv::Mat& picture)>;
+using SeeFrame = std::function<void(const core::Frame& frame)>;
 
 // Reads the recording and describes each frame by each describer, with a progress line on stderr;
-// `also_see` is shown each picture once. Descriptions are timed after that, when reading and
-// rendering have ended: those of up to 400 frames, spread evenly, by one describer after the other.
-// Nothing after Ctrl-C. Throws InputError on a bad frame.
+// `also_see` is shown each frame once, in their order. Descriptions are timed after that, when
+// reading and rendering have ended: those of up to 400 frames, spread evenly, by one describer
+// after the other. Nothing after Ctrl-C. Throws InputError on a bad frame.
 std::optional<DescribedRecording> describe_recording(OpenRecording recording,
                                                      const std::vector<NamedDescriber>& describers,
-                                                     const SeePicture& also_see = nullptr);
+                                                     const SeeFrame& also_see = nullptr);
 
 }  // namespace samewhere::paper

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,20 +51,26 @@ void write_walk(const input::TestFolder& folder, const std::string& name, int nu
   folder.write(name + "/same_place.txt", truth);
 }
 
-TEST(OpenRecordings, RefusesTwoOfOneNameAndWindow) {
+TEST(OpenRecording, ThrowsWithoutPlaces) {
   const input::TestFolder folder;
-  write_walk(folder, "a/walk", 2);
-  write_walk(folder, "b/walk", 2);
+  write_walk(folder, "walk", 2);
   const auto config = [&](const std::string& source) {
     return with_source(pipeline::profile("paper"), (folder.root() / source).string());
   };
-  EXPECT_EQ(open_recordings({config("a/walk@2"), config("a/walk@3")}).size(), 2u);
-  EXPECT_THROW(open_recordings({config("a/walk@2"), config("b/walk@2")}), core::InputError);
-  EXPECT_THROW(open_recordings({config("a/walk@2"), config("nowhere")}), core::InputError);
+  const OpenRecording recording = open_recording(config("walk@2"));
+  EXPECT_EQ(recording.name, "walk");
+  EXPECT_EQ(recording.num_frames, 6);
+  EXPECT_EQ(recording.config.retrieve.window_frames, 2);
+  EXPECT_THROW(open_recording(config("nowhere")), core::InputError);
+  std::filesystem::remove(folder.root() / "walk/same_place.txt");
+  EXPECT_THROW(open_recording(config("walk@2")), core::InputError);
 }
 
 TEST(FileStem, HasPlainLettersOnly) {
-  EXPECT_EQ(file_stem("hotel?seed=3&similarity=1", 2), "hotel-seed-3-similarity-1-2");
+  const pipeline::Config config = pipeline::profile("paper");
+  EXPECT_EQ(file_stem(with_source(config, "twin:hotel?seed=3&similarity=1@10s")),
+            "hotel-seed-3-similarity-1-10s");
+  EXPECT_EQ(file_stem(with_source(config, "/data/kitchen/@149")), "kitchen-149");
 }
 
 TEST(DescribeRecording, DescribesEachFrameAndTimesUpTo400SpreadEvenly) {
@@ -71,15 +78,12 @@ TEST(DescribeRecording, DescribesEachFrameAndTimesUpTo400SpreadEvenly) {
   write_walk(folder, "short", 2);
   write_walk(folder, "long", 160);
   const pipeline::Config config = pipeline::profile("paper");
-  std::vector<pipeline::Config> configs;
-  for (const char* name : {"short@2", "long@2"})
-    configs.push_back(with_source(config, (folder.root() / name).string()));
-  std::vector<OpenRecording> recordings = open_recordings(configs);
   for (const int num_frames : {6, 480}) {
     int num_seen = 0;
-    const auto described =
-        describe_recording(std::move(recordings[num_frames == 6 ? 0 : 1]),
-                           make_describers("hog", config), [&](const cv::Mat&) { ++num_seen; });
+    const char* name = num_frames == 6 ? "short@2" : "long@2";
+    const auto described = describe_recording(
+        open_recording(with_source(config, (folder.root() / name).string())),
+        {make_named_describer("hog", config)}, [&](const core::Frame&) { ++num_seen; });
     ASSERT_TRUE(described.has_value());
     EXPECT_EQ(num_seen, num_frames);
     const DescribedViews& views = described->by_describer.front();
@@ -91,15 +95,16 @@ TEST(DescribeRecording, DescribesEachFrameAndTimesUpTo400SpreadEvenly) {
   }
 }
 
-TEST(MakeDescribers, AreNamedAndNeverTwoTheSame) {
+TEST(MakeNamedDescriber, IsTheConfiguredOneHogOrANetwork) {
   const pipeline::Config config = pipeline::profile("paper");
-  for (const auto& [list, name] : {std::pair("", "autoencoder"), std::pair("hog", "hog")}) {
-    const auto describers = make_describers(list, config);
-    ASSERT_EQ(describers.size(), 1u) << list;
-    EXPECT_EQ(describers.front().name, name);
-  }
-  for (const char* list : {"hog,hog", "hog,", "hog,/nowhere/net.onnx"})
-    EXPECT_THROW(make_describers(list, config), core::InputError) << list;
+  const NamedDescriber paper = make_named_describer(kPaperMethod, config);
+  const NamedDescriber network = make_named_describer("autoencoder.onnx", config);
+  EXPECT_EQ(paper.name, "paper");
+  EXPECT_EQ(network.name, "autoencoder");
+  EXPECT_EQ(paper.describer->checksum(), network.describer->checksum());
+  EXPECT_NE(make_named_describer("hog", config).describer->checksum(),
+            network.describer->checksum());
+  EXPECT_THROW(make_named_describer("/nowhere/net.onnx", config), core::InputError);
 }
 
 }  // namespace

@@ -19,31 +19,51 @@ core::Candidate candidate_of(const evaluate::Match& match) {
           match.score};
 }
 
-PausedLoops loops_of(const std::vector<evaluate::Match>& matches, const core::Truth& truth,
-                     const pipeline::Config& config) {
-  const int window_frames = config.retrieve.window_frames;
-  const std::vector<evaluate::Match> accepted = accepted_with_pause(matches, config.verify);
-  PausedLoops loops{evaluate::count_accepted(*truth.places, accepted, window_frames), std::nullopt};
-  if (!truth.aliased_pairs.empty())
-    loops.num_aliased =
-        evaluate::count_accepted_aliased(truth.aliased_pairs, accepted, window_frames);
-  return loops;
+SearchKind kind_of(retrieve::Search search) {
+  switch (search) {
+    case retrieve::Search::kExact:
+      return SearchKind::kExact;
+    case retrieve::Search::kEveryQueue:
+      return SearchKind::kEveryQueue;
+    case retrieve::Search::kSampled:
+      break;
+  }
+  return SearchKind::kSampled;
 }
 
-PaperRun run_once(const DescribedRecording& recording, const DescribedViews& views,
-                  const pipeline::Config& config) {
+// Of each step, and of all of a frame together where its description was timed.
+std::map<std::string, core::TimingSummary> step_times(const DescribedRecording& recording,
+                                                      const DescribedViews& views,
+                                                      const core::Timings& timings) {
+  const std::vector<double>& search_ms = timings.durations_ms().at(kSearch);
+  const std::vector<double>& exact_ms = timings.durations_ms().at(kExactSimilarity);
+  std::vector<double> together_ms;
+  for (std::size_t i = 0; i < views.durations_ms.size(); ++i) {
+    const auto frame = static_cast<std::size_t>(recording.timed_frames.at(i));
+    together_ms.push_back(views.durations_ms[i] + search_ms.at(frame) + exact_ms.at(frame));
+  }
+  return {{"describe", core::summarize(views.durations_ms)},
+          {kSearch, core::summarize(search_ms)},
+          {kExactSimilarity, core::summarize(exact_ms)},
+          {kTogether, core::summarize(together_ms)}};
+}
+
+RecognitionRow run_once(const DescribedRecording& recording, const DescribedViews& views,
+                        const pipeline::Config& config) {
   core::Timings timings;
   const std::vector<evaluate::Match> matches = best_matches(views.views, config, timings);
-  PaperRun run;
-  run.search = config.retrieve.search;
-  run.num_draws = config.retrieve.num_draws;
-  run.seed = config.seed;
-  run.result =
-      evaluate::precision_recall(*recording.truth.places, matches, config.retrieve.window_frames);
-  run.loops = loops_of(matches, recording.truth, config);
-  run.search_ms = timings.durations_ms().at(kSearch);
-  run.exact_similarity_ms = timings.durations_ms().at(kExactSimilarity);
-  return run;
+  const bool is_sampled = config.retrieve.search == retrieve::Search::kSampled;
+  return {.recording = recording.name,
+          .window_frames = recording.window_frames,
+          .method = views.describer,
+          .search = kind_of(config.retrieve.search),
+          .num_draws = is_sampled ? config.retrieve.num_draws : 0,
+          .seed = config.seed,
+          .result =
+              evaluate::precision_recall(*recording.truth.places, matches, recording.window_frames),
+          .loops = count_loops(accepted_with_pause(matches, config.verify), recording.truth,
+                               recording.window_frames),
+          .ms = step_times(recording, views, timings)};
 }
 
 // One config for each search.
@@ -99,29 +119,33 @@ std::vector<evaluate::Match> accepted_with_pause(const std::vector<evaluate::Mat
   return accepted;
 }
 
-std::optional<PaperBlock> run_paper_plan(const DescribedRecording& recording,
-                                         const DescribedViews& views, const pipeline::Config& given,
-                                         const PaperPlan& plan) {
+RecognitionLoops count_loops(const std::vector<evaluate::Match>& accepted, const core::Truth& truth,
+                             int window_frames) {
+  const evaluate::AcceptedCounts counts =
+      evaluate::count_accepted(*truth.places, accepted, window_frames);
+  RecognitionLoops loops{counts.num_true, counts.num_false, counts.num_near, std::nullopt};
+  if (!truth.aliased_pairs.empty())
+    loops.num_aliased =
+        evaluate::count_accepted_aliased(truth.aliased_pairs, accepted, window_frames);
+  return loops;
+}
+
+std::optional<std::vector<RecognitionRow>> run_searches(const DescribedRecording& recording,
+                                                        const DescribedViews& views,
+                                                        const pipeline::Config& given,
+                                                        const PaperPlan& plan) {
   pipeline::Config config = given;
   config.retrieve.window_frames = recording.window_frames;
-  PaperBlock block{.recording = recording.name,
-                   .describer = views.describer,
-                   .describer_checksum = views.checksum,
-                   .window_frames = recording.window_frames,
-                   .min_similarity = config.verify.min_similarity,
-                   .pause_frames = config.verify.pause_frames,
-                   .timed_frames = recording.timed_frames,
-                   .describe_ms = views.durations_ms,
-                   .runs = {}};
   const std::vector<pipeline::Config> configs = configs_of(config, plan);
   core::Progress progress(fmt::format("{}, {}: searches", recording.name, views.describer),
                           static_cast<int>(configs.size()));
+  std::vector<RecognitionRow> rows;
   for (const pipeline::Config& each : configs) {
     if (core::is_interrupted()) return std::nullopt;
-    block.runs.push_back(run_once(recording, views, each));
-    progress.update(static_cast<int>(block.runs.size()));
+    rows.push_back(run_once(recording, views, each));
+    progress.update(static_cast<int>(rows.size()));
   }
-  return block;
+  return rows;
 }
 
 }  // namespace samewhere::paper

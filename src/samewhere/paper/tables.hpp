@@ -4,25 +4,36 @@
 #include <string>
 #include <vector>
 
-#include <samewhere/paper/runs.hpp>
+#include <samewhere/paper/results.hpp>
 
 namespace samewhere::paper {
 
-// Tables of the published method that can be printed: 2 (AUC by number of draws), 3 (milliseconds),
-// 6 (loops right and wrong).
+// Tables of the published method: 2 and 3 (AUC and milliseconds by number of draws), 4 and 5 (the
+// same by method), 6 to 8 (SLAM: loops right and wrong, trajectory error, frames per second).
 using PaperTableNumbers = std::set<int>;
 
-// "2,3". Throws InputError on anything but 2, 3 and 6.
+// "2,3" or "2-5,7". Throws InputError on anything but 2 to 8.
 PaperTableNumbers parse_table_numbers(const std::string& list);
 
-// For the terminal: the wanted tables, one column for each number of draws, one for every queue
-// ("all") and one for the exact search, means and standard deviations over the seeds, the published
-// figures below ours.
-std::string paper_text(const PaperBlock& block, const PaperTableNumbers& numbers);
+// A table as it is printed; every row has as many cells as the header.
+struct PaperTable {
+  struct Row {
+    std::vector<std::string> cells;
+    bool is_published = false;  // by the paper, of its own sequences
+  };
 
-// One row for each search: what it found, and which describer saw the views. As CSV.
-std::string searches_csv(const std::vector<PaperBlock>& blocks);
-// One row for each step of each block and number of draws, milliseconds a frame. As CSV.
-std::string times_csv(const std::vector<PaperBlock>& blocks);
+  int number = 0;
+  std::string title;
+  std::vector<std::string> header;
+  std::vector<Row> rows;
+  std::string note;  // what the columns are, in sentences
+};
+
+// Those of the wanted tables that have a row, ours above the published ones: means over the seeds,
+// and the standard deviation behind them where there are several.
+std::vector<PaperTable> make_tables(const Results& results, const PaperTableNumbers& numbers);
+
+// For the terminal.
+std::string as_text(const PaperTable& table);
 
 }  // namespace samewhere::paper

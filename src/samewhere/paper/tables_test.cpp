@@ -1,118 +1,136 @@
 #include <algorithm>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <samewhere/core/errors.hpp>
-#include <samewhere/paper/curves.hpp>
+#include <samewhere/paper/page.hpp>
+#include <samewhere/paper/table_cells.hpp>
 #include <samewhere/paper/tables.hpp>
-#include <samewhere/paper/test_described.hpp>
+#include <samewhere/paper/test_results.hpp>
 
 namespace samewhere::paper {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
+using Cells = std::vector<std::string>;
 
-// Draws every queue, so that every seed finds the same.
-PaperBlock sample_block() {
-  const DescribedRecording recording = second_lap();
-  const PaperPlan plan{.num_draws = {500}, .num_seeds = 2};
-  return *run_paper_plan(recording, recording.by_describer.front(), small_store(), plan);
+const PaperTableNumbers kAll{2, 3, 4, 5, 6, 7, 8};
+
+// The cells of the first row with this name of the first table with this title.
+Cells row_of(const std::vector<PaperTable>& tables, const std::string& title,
+             const std::string& name) {
+  for (const PaperTable& table : tables) {
+    if (table.title != title) continue;
+    for (const PaperTable::Row& row : table.rows) {
+      if (row.cells.front() == name) return {row.cells.begin() + 1, row.cells.end()};
+    }
+  }
+  ADD_FAILURE() << title << ", " << name;
+  return {};
 }
 
-// The cells of the line that starts with `name`, after the name.
-std::vector<std::string> cells_of(const std::string& text, const std::string& name) {
-  const std::size_t at = text.find("\n" + name);
-  EXPECT_NE(at, std::string::npos) << name << " in\n" << text;
-  const std::size_t begin = at + 1 + name.size();
-  std::istringstream line(text.substr(begin, text.find('\n', begin) - begin));
-  std::vector<std::string> cells;
-  for (std::string cell; line >> cell;) cells.push_back(cell);
-  return cells;
+TEST(PaperTables, TableTwoHasAColumnForEachNumberOfDraws) {
+  const auto tables = make_tables(made_up_results(), {2});
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_THAT(tables.front().header, ElementsAre("draws L", "50", "all", "exact"));
+  EXPECT_EQ(row_of(tables, "AUC by number of draws", "hall <1>"),
+            (Cells{"0.7500 ± 0.0707", "-", "0.8500"}));
+  EXPECT_EQ(row_of(tables, "AUC by number of draws", "published, Lip6 Indoor"),
+            (Cells{"0.8321", "", ""}));
 }
 
-TEST(PaperTables, ShowWhatWasCountedByHand) {
-  const std::string text = paper_text(sample_block(), {2, 3, 6});
-  using Cells = std::vector<std::string>;
-  EXPECT_THAT(text, HasSubstr("second lap, by hand: 6 frames, 3 with a loop, window 2 frames"));
-  EXPECT_EQ(cells_of(text, "Table 2: draws L"), (Cells{"500", "all", "exact"}));
-  EXPECT_EQ(cells_of(text, "AUC"), (Cells{"0.5278", "0.5278", "0.5278"}));
-  EXPECT_EQ(cells_of(text, "recall at 100 % precision"), (Cells{"0.3333", "0.3333", "0.3333"}));
-  EXPECT_EQ(cells_of(text, "precision at recall .35"), (Cells{"0.6667", "0.6667", "0.6667"}));
-  EXPECT_EQ(cells_of(text, "precision at recall .70"), (Cells{"0.0000", "0.0000", "0.0000"}));
-  EXPECT_EQ(cells_of(text, "preprocess and describe, median"), (Cells{"2.000", "2.000", "2.000"}));
-  EXPECT_EQ(cells_of(text, "true"), (Cells{"2.0", "2.0", "2.0"}));
-  EXPECT_EQ(cells_of(text, "false"), (Cells{"1.0", "1.0", "1.0"}));
-  EXPECT_EQ(cells_of(text, "  of aliased pairs"), (Cells{"1.0", "1.0", "1.0"}));
+TEST(PaperTables, MethodsStandBesideTheSearchThatThePaperUses) {
+  const auto tables = make_tables(made_up_results(), kAll);
+  EXPECT_EQ(row_of(tables, "AUC by method", "hall <1>"), (Cells{"0.7500 ± 0.0707", "0.9500"}));
+  EXPECT_EQ(row_of(tables, "AUC by method", "published, TUM fr3_loh"), (Cells{"0.8221", ""}));
+  EXPECT_EQ(row_of(tables, "AUC by method, exact search", "hall <1>"), Cells{"0.8500"});
+  EXPECT_EQ(row_of(tables, "milliseconds a frame by method", "hall <1>"),
+            (Cells{"12.50 ± 0.00", "12.50"}));
+  const char* alone = "loops right/wrong, by recognition alone";
+  EXPECT_EQ(row_of(tables, alone, "hall <1>"), (Cells{"4.0 ± 0.0 / 1.0 ± 0.0", "6/0"}));
+  EXPECT_EQ(row_of(tables, alone, "all, first seed"),
+            (Cells{"1 of 5 false (20.0 %)", "0 of 6 false, at most 50.0 % at 95 %"}));
 }
 
-TEST(PaperTables, PublishedFiguresStandUnderTheirNumberOfDraws) {
-  PaperBlock block = sample_block();
-  for (PaperRun& run : block.runs) run.num_draws = 50;
-  const std::string text = paper_text(block, {2, 3});
-  EXPECT_EQ(cells_of(text, "published AUC, Lip6 Indoor"), std::vector<std::string>{"0.8321"});
-  EXPECT_EQ(cells_of(text, "published, Bicocca Indoor"), std::vector<std::string>{"50.52"});
+TEST(PaperTables, SlamHasLoopsErrorsAndRates) {
+  const auto tables = make_tables(made_up_results(), kAll);
+  EXPECT_EQ(row_of(tables, "loops right/wrong in SLAM", "hall <1>"),
+            (Cells{"3.0 ± 0.0 / 2.0 ± 0.0", "3.0 ± 0.0 / 0.0 ± 0.0"}));
+  EXPECT_EQ(row_of(tables, "loops right/wrong in SLAM", "published, Bicocca Indoor"),
+            (Cells{"25/16", ""}))
+      << "ORB-SLAM2 closes loops by bag of words";
+  EXPECT_EQ(row_of(tables, "absolute trajectory error, m", "hall <1>, bag of words"),
+            (Cells{"6.0000 ± 2.8284", "0.0100 ± 0.0000", "2.7000 ± 1.2728", "3.0000 ± 1.4142",
+                   "95.0 ± 0.0"}));
+  EXPECT_EQ(row_of(tables, "frames per second", "hall <1>"), (Cells{"40.0 ± 0.0", "40.0 ± 0.0"}));
 }
 
-TEST(PaperTables, OnlyTheWantedOnesArePrinted) {
-  const std::string text = paper_text(sample_block(), {3});
-  EXPECT_THAT(text, HasSubstr("Table 3"));
-  EXPECT_THAT(text, Not(HasSubstr("Table 2")));
-  EXPECT_THAT(text, Not(HasSubstr("Table 6")));
+TEST(PaperTables, WithoutARowThereIsNoTable) {
+  Results results = made_up_results();
+  results.slam.clear();
+  EXPECT_EQ(make_tables(results, {7, 8}).size(), 0u) << "published figures alone are no table";
 }
 
 TEST(PaperTables, ATableThatIsUnknownIsNamed) {
   EXPECT_EQ(parse_table_numbers("2,3"), (PaperTableNumbers{2, 3}));
-  EXPECT_EQ(parse_table_numbers("6,2,6"), (PaperTableNumbers{2, 6}));
-  for (const char* list : {"4", "2,", "", "2;3", "two", "2,33"}) {
+  EXPECT_EQ(parse_table_numbers("7,2-4"), (PaperTableNumbers{2, 3, 4, 7}));
+  for (const char* list : {"9", "1", "2,", "", "2;3", "two", "2,33", "4-2", "2-9"})
     EXPECT_THROW(parse_table_numbers(list), core::InputError) << list;
-  }
 }
 
-TEST(PaperTables, EverySearchHasARowAndEveryStepATime) {
-  const std::vector<PaperBlock> blocks{sample_block(), sample_block()};
+TEST(PaperCells, AZeroComesWithItsBound) {
+  EXPECT_EQ(mean_cell({}, 2), "-");
+  EXPECT_EQ(mean_cell({0.5}, 2), "0.50");
+  EXPECT_EQ(mean_cell({1.0, 3.0}, 1), "2.0 ± 1.4");
+  EXPECT_EQ(false_share(0, 0), "no loop");
+  EXPECT_EQ(false_share(0, 2), "0 of 2 false, at most 100.0 % at 95 %");
+}
+
+TEST(PaperResults, EveryRowIsInTheFiles) {
+  const Results results = made_up_results();
   const auto num_lines = [](const std::string& csv) {
     return std::count(csv.begin(), csv.end(), '\n');
   };
-  const std::string searches = searches_csv(blocks);
-  EXPECT_EQ(num_lines(searches), 1 + 2 * 4);
-  EXPECT_THAT(searches,
-              HasSubstr("second lap,by hand,0000000000001234,2,500,1,6,3,0.527778,0.333333,"
-                        "0.666667,0.000000,2,1,1,0"));
-  EXPECT_EQ(num_lines(times_csv(blocks)), 1 + 2 * 3 * 4);
+  EXPECT_EQ(num_lines(recognition_csv(results)), 1 + 4);
+  EXPECT_THAT(recognition_csv(results),
+              HasSubstr("hall <1>,7,paper,sampled,50,1,20,8,0.800000,0.500000,1.000000,0.750000,4,"
+                        "1,1,0,12.500000,"));
+  EXPECT_EQ(num_lines(slam_csv(results)), 1 + 4);
+  const nlohmann::json json = results_json(results);
+  EXPECT_EQ(json.at("recognition").size(), 4u);
+  EXPECT_EQ(json.at("published").at("sequences").size(), 3u);
+  EXPECT_EQ(json.at("published").at("sequences").at(0).at("auc_by_method").at("gem"), .8103);
 }
 
-TEST(PaperTables, NoLoopIsNoPerfection) {
-  PaperBlock block = sample_block();
-  for (PaperRun& run : block.runs) run.loops.counts = {};
-  EXPECT_EQ(cells_of(paper_text(block, {6}), "false / (true + false)"),
-            (std::vector<std::string>{"-", "-", "-"}));
-}
-
-TEST(PaperTables, TimesTogetherAreThoseOfTheTimedFrames) {
-  PaperBlock block = sample_block();
-  ASSERT_EQ(block.timed_frames, (std::vector<int>{0, 2, 4}));
-  for (PaperRun& run : block.runs) {
-    run.search_ms = {1, 90, 1, 90, 1, 90};
-    run.exact_similarity_ms = {5, 90, 5, 90, 5, 90};
+TEST(PaperResults, RowsComeBackFromTheirFiles) {
+  for (const RecognitionRow& row : made_up_results().recognition) {
+    const nlohmann::json json = row;
+    EXPECT_EQ(nlohmann::json(json.get<RecognitionRow>()), json);
   }
-  EXPECT_EQ(cells_of(paper_text(block, {3}), "together, median").front(), "8.000");
+  for (const SlamRow& row : made_up_results().slam) {
+    const nlohmann::json json = row;
+    EXPECT_EQ(nlohmann::json(json.get<SlamRow>()), json);
+  }
+  SlamRow lost = made_up_slam("off", 0, 1.0);
+  lost.ate_m.reset();
+  EXPECT_FALSE(nlohmann::json(lost).get<SlamRow>().ate_m.has_value());
 }
 
-TEST(PaperTables, TheDescribersOfARecordingShareAPicture) {
-  PaperBlock block = sample_block();
-  block.recording = "hotel?seed=3&similarity=1";
-  PaperBlock other = block;
-  other.describer = "network";
-  const std::string svg = curves_svg({block, other});
-  EXPECT_THAT(svg, HasSubstr("hotel?seed=3&amp;similarity=1"));
-  for (const char* curve : {"by hand, L = 500: 0.528", "by hand, exact: 0.528",
-                            "network, L = 500: 0.528", "network, exact: 0.528"}) {
-    EXPECT_THAT(svg, HasSubstr(curve));
-  }
-  EXPECT_THAT(svg, HasSubstr("Lip6 Indoor 0.832"));
+TEST(PaperPage, HoldsTablesFiguresAndWhatIsMissing) {
+  const Results results = made_up_results();
+  const std::string page =
+      page_html(results, make_tables(results, kAll), {{"Figure 3: curves", "<svg/>"}}, "bench <x>");
+  EXPECT_THAT(page, HasSubstr("<h2>Table 2: AUC by number of draws</h2>"));
+  EXPECT_THAT(page, HasSubstr("<tr class=\"published\"><td>published, Lip6 Indoor</td>"));
+  EXPECT_THAT(page, HasSubstr("hall &lt;1&gt;"));
+  EXPECT_THAT(page, Not(HasSubstr("hall <1>")));
+  EXPECT_THAT(page, HasSubstr("bench &lt;x&gt;"));
+  EXPECT_THAT(page, HasSubstr("data:image/svg+xml;base64,PHN2Zy8+"));
+  EXPECT_THAT(page, HasSubstr("<li>gem: no file</li>"));
 }
 
 }  // namespace

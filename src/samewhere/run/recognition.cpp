@@ -14,6 +14,12 @@
 namespace samewhere::run {
 namespace {
 
+// There is no map that could use one.
+pipeline::Config without_pose(pipeline::Config config) {
+  config.verify.require_pose = false;
+  return config;
+}
+
 // The time of all steps of a frame, for each frame that all of them have had.
 void add_whole_frames(core::Timings& timings) {
   std::vector<double> whole_ms;
@@ -54,7 +60,7 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps) {
 }
 
 Recognition::Recognition(const pipeline::Config& config)
-    : config_(config), detector_(config, pipeline::recognition_settings(config)) {}
+    : config_(without_pose(config)), detector_(config_, pipeline::recognition_settings(config_)) {}
 
 RecognitionSteps Recognition::steps() {
   return {.describe = [this](const core::Frame& frame) { return describe(frame); },

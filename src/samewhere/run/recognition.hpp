@@ -44,7 +44,7 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps);
 // Recognition alone: which frames show a place seen before?
 class Recognition {
  public:
-  // The window is resolved into frames.
+  // The window is resolved into frames. No loop needs a relative pose: verify.require_pose is off.
   explicit Recognition(const pipeline::Config& config);
 
   // Point into this object.

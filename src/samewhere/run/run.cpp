@@ -380,8 +380,7 @@ RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const pipel
                            std::function<void()> begin, bool is_quiet) {
   const auto source = read_ahead(std::move(unbuffered), given);
   const core::Truth truth = source->truth();
-  pipeline::Config config = with_window_in_frames(given, source->info());
-  config.verify.require_pose = false;  // there is no map that could use one
+  const pipeline::Config config = with_window_in_frames(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
   Recognition recognition(config);
   FrameFeed feed(*source, outcome, is_quiet);

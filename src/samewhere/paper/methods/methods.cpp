@@ -18,12 +18,12 @@ struct KnownMethod {
   MakeMethod make;
 };
 
-pipeline::Config recognition_config(const pipeline::Config& base, const char* prior) {
+pipeline::Config recognition_config(const pipeline::Config& base) {
   pipeline::Config config = pipeline::profile("recognition");
   config.source = base.source;
   config.seed = base.seed;
   config.retrieve.window_frames = base.retrieve.window_frames;
-  core::set_config(config, prior);
+  core::set_config(config, "verify.prior=unique");
   return config;
 }
 
@@ -31,14 +31,10 @@ const std::vector<KnownMethod>& registry() {
   static const std::vector<KnownMethod> methods = {
       {{"ours", "samewhere",
         "profile recognition, prior unique: 2000 ORB, HOG and visual words, best of three places, "
-        "relative pose, 52 inliers of a view or 40 of two in a row"},
+        "52 inliers of a view or 40 of two in a row; with the default prior recognition alone "
+        "accepts nothing"},
        [](const pipeline::Config& base) {
-         return make_recognition_method(recognition_config(base, "verify.prior=unique"));
-       }},
-      {{"ours-repetitive", "samewhere, default prior",
-        "the same with the default prior, repetitive: appearance alone accepts nothing"},
-       [](const pipeline::Config& base) {
-         return make_recognition_method(recognition_config(base, "verify.prior=repetitive"));
+         return make_recognition_method(recognition_config(base));
        }},
   };
   return methods;
@@ -61,8 +57,8 @@ std::unique_ptr<Method> make_method(const std::string& name, const pipeline::Con
     if (method.info.name == name) return method.make(base);
     names.push_back(method.info.name);
   }
-  throw core::InputError(fmt::format("there is no method \"{}\", expected one of {}", name,
-                                     fmt::join(names, ", ")));
+  throw core::InputError(
+      fmt::format("there is no method \"{}\", expected one of {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace samewhere::paper

@@ -19,9 +19,9 @@ struct MethodInfo {
 // The detectors that there are, in the order of the tables.
 const std::vector<MethodInfo>& known_methods();
 
-// Of this name. `base` is the config of the command line: source, seed and window, in frames. Throws
-// InputError naming the known ones if it is none of them, and on a file that it needs and that is
-// not there.
+// Of this name. `base` is the config of the command line: source, seed and window, in frames.
+// Throws InputError naming the known ones if it is none of them, and on a file that it needs and
+// that is not there.
 std::unique_ptr<Method> make_method(const std::string& name, const pipeline::Config& base);
 
 }  // namespace samewhere::paper

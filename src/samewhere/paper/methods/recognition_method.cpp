@@ -7,8 +7,8 @@ namespace {
 std::vector<evaluate::Match> matches_of(const std::vector<report::ScoredPair>& pairs) {
   std::vector<evaluate::Match> matches;
   for (const report::ScoredPair& pair : pairs) {
-    matches.push_back({static_cast<int>(pair.query.index()), static_cast<int>(pair.match.index()),
-                       pair.score});
+    matches.push_back(
+        {static_cast<int>(pair.query.index()), static_cast<int>(pair.match.index()), pair.score});
   }
   return matches;
 }
