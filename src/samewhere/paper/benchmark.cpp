@@ -5,10 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include <samewhere/core/config.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/program.hpp>
 #include <samewhere/paper/benchmark.hpp>
@@ -108,14 +108,22 @@ class Benchmark {
     results_.missing.push_back({recording, method, reason});
   }
 
-  std::string settings_of(const pipeline::Config& config, const std::string& method) const {
-    std::string text = fmt::format("{}: {}\nseeds {}, draws", method, info_of(method).what_ran,
-                                   plan_.searches.num_seeds);
-    for (const int num_draws : plan_.searches.num_draws) text += fmt::format(" {}", num_draws);
+  RowSettings settings_for(const pipeline::Config& config, const std::string& method) const {
+    RowSettings settings = settings_of(config);
+    settings["method"] = fmt::format("{}: {}", method, info_of(method).what_ran);
+    settings["seeds"] = std::to_string(plan_.searches.num_seeds);
+    settings["draws"] = fmt::format("{}", fmt::join(draws_of(method), ","));
     for (const NamedDescriber& by : describers_) {
-      if (by.name == method) text += fmt::format("\n{:016x}", by.describer->checksum());
+      if (by.name == method)
+        settings["describer"] = fmt::format("{:016x}", by.describer->checksum());
     }
-    return text + "\n" + core::config_as_yaml(config);
+    return settings;
+  }
+
+  // The published method alone is searched with several numbers.
+  std::vector<int> draws_of(const std::string& method) const {
+    return method == kPaperMethod ? plan_.searches.num_draws
+                                  : std::vector<int>{kPublishedDrawsOfUse};
   }
 
   std::string piece_of(const pipeline::Config& config, const std::string& method) const {
@@ -127,7 +135,7 @@ class Benchmark {
     std::set<std::string> missing;
     for (const ComparedMethod& method : results_.methods) {
       const auto rows =
-          store_.find(piece_of(config, method.name), settings_of(config, method.name));
+          store_.find(piece_of(config, method.name), settings_for(config, method.name));
       if (rows)
         add(rows->get<std::vector<RecognitionRow>>());
       else
@@ -169,7 +177,7 @@ class Benchmark {
               const DescribedRecording& recording) {
     for (const DescribedViews& views : recording.by_describer) {
       PaperPlan searches = plan_.searches;
-      if (views.describer != kPaperMethod) searches.num_draws = {kPublishedDrawsOfUse};
+      searches.num_draws = draws_of(views.describer);
       const auto rows = run_searches(recording, views, in_frames, searches);
       if (!rows) return false;
       keep(config, views.describer, *rows);
@@ -179,7 +187,7 @@ class Benchmark {
 
   void keep(const pipeline::Config& config, const std::string& method,
             const std::vector<RecognitionRow>& rows) {
-    store_.keep(piece_of(config, method), settings_of(config, method), rows);
+    store_.keep(piece_of(config, method), settings_for(config, method), rows);
     add(rows);
     on_news_(results_);
   }
@@ -198,7 +206,7 @@ class Benchmark {
       const pipeline::Config config = slam_config(base, configuration.name, seed);
       const std::string piece =
           fmt::format("{}.slam-{}-{}", file_stem(base), configuration.name, seed);
-      const std::string settings = core::config_as_yaml(config);
+      const RowSettings settings = settings_of(config);
       std::optional<nlohmann::json> known = store_.find(piece, settings);
       if (!known) {
         core::note(fmt::format("{}: SLAM with loop closing {}, run {} of {}", recording_name(base),

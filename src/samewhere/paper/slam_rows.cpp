@@ -76,8 +76,6 @@ pipeline::Config slam_config(const pipeline::Config& base, const std::string& co
   pipeline::Config config = pipeline::profile(is_off ? "default" : configuration);
   config.source = base.source;
   config.seed = seed;
-  config.retrieve.window_frames = base.retrieve.window_frames;
-  config.retrieve.window_s = base.retrieve.window_s;
   if (is_off) config.close_loops = false;
   return config;
 }

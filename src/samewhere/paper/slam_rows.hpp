@@ -14,7 +14,8 @@ namespace samewhere::paper {
 inline constexpr std::array<const char*, 4> kSlamConfigurations = {"off", "paper", "usual",
                                                                    "default"};
 
-// The profile of a configuration with the source and the window of `base`, and this seed.
+// The profile of a configuration with the source of `base` and this seed. The window is the
+// profile's, not that of the recognition protocol.
 pipeline::Config slam_config(const pipeline::Config& base, const std::string& configuration,
                              int seed);
 
