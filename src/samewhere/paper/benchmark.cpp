@@ -14,6 +14,7 @@
 #include <samewhere/paper/benchmark.hpp>
 #include <samewhere/paper/method_rows.hpp>
 #include <samewhere/paper/methods/methods.hpp>
+#include <samewhere/paper/place_truth.hpp>
 #include <samewhere/paper/published.hpp>
 #include <samewhere/paper/slam_rows.hpp>
 #include <samewhere/run/open_source.hpp>

@@ -6,14 +6,12 @@
 
 #include <fmt/format.h>
 
-#include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/timing.hpp>
-#include <samewhere/evaluate/depth_places.hpp>
-#include <samewhere/evaluate/trajectory_error.hpp>
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/paper/described_recording.hpp>
+#include <samewhere/paper/place_truth.hpp>
 #include <samewhere/paper/spread.hpp>
 #include <samewhere/run/open_source.hpp>
 
@@ -26,43 +24,6 @@ constexpr std::string_view kTwin = "twin:";
 
 std::string network_name(const std::string& file) {
   return std::filesystem::path(file).stem().string();
-}
-
-// What the frames of a recording with depth see, from where they truly are. Empty if the first of
-// them has no depth. Throws Interrupted after Ctrl-C.
-std::vector<std::optional<evaluate::DepthView>> depth_views(core::Source& source,
-                                                            const core::Trajectory& trajectory,
-                                                            std::optional<core::Camera>& camera) {
-  core::Progress progress(source.info().name + ": depth read", source.info().num_frames);
-  std::vector<std::optional<evaluate::DepthView>> views;
-  while (const std::optional<core::Frame> frame = source.next()) {
-    core::stop_if_interrupted();
-    if (!camera && (!frame->depth_m || !frame->rig)) return {};
-    if (!camera) camera = frame->rig->cameras.front();
-    const auto pose = evaluate::truth_at(trajectory, frame->stamp_s);
-    views.emplace_back();
-    if (pose && frame->depth_m) views.back() = evaluate::DepthView{frame->depth_m->clone(), *pose};
-    progress.update(static_cast<int>(views.size()));
-  }
-  return views;
-}
-
-[[noreturn]] void complain_of_no_places(const pipeline::Config& config) {
-  throw core::InputError(fmt::format(
-      "{}: nothing says which of its frames show the same place; expected same_place.pgm or "
-      "same_place.txt beside the images, depth and true poses, or a twin building of a short walk",
-      config.source));
-}
-
-core::Truth place_truth(const core::Source& source, const pipeline::Config& config) {
-  core::Truth truth = source.truth();
-  if (!truth.places && source.info().has_depth && !truth.trajectory.empty()) {
-    std::optional<core::Camera> camera;
-    const auto views = depth_views(*run::open_source(config), truth.trajectory, camera);
-    if (camera) truth.places = evaluate::places_from_depth(views, *camera);
-  }
-  if (!truth.places) complain_of_no_places(config);
-  return truth;
 }
 
 // A frame whose description is timed at the end.
@@ -152,17 +113,10 @@ std::string file_stem(const pipeline::Config& config) {
   return stem;
 }
 
-void require_place_truth(const core::Source& source, const pipeline::Config& config) {
-  if (config.source.starts_with(kTwin)) return;
-  const core::Truth truth = source.truth();
-  const bool has_places = truth.places || (source.info().has_depth && !truth.trajectory.empty());
-  if (!has_places) complain_of_no_places(config);
-}
-
 OpenRecording open_recording(const pipeline::Config& config) {
   auto source = run::open_source_with_truth(config);
   const core::SourceInfo info = source->info();
-  core::Truth truth = place_truth(*source, config);
+  core::Truth truth = truth_with_places(*source, config);
   return {.config = run::with_window_in_frames(config, info),
           .name = recording_name(config),
           .num_frames = info.num_frames,

@@ -49,14 +49,10 @@ struct OpenRecording {
   core::Truth truth;  // has places
 };
 
-// Throws InputError naming the source if nothing about it tells which of its frames show the same
-// place. Rendered buildings are not asked: they have to compute it.
-void require_place_truth(const core::Source& source, const pipeline::Config& config);
-
 // Opens the source, and has its truth: what a twin building has to compute for that is computed
-// now; where nothing but depth and true poses tells of places, all depth is read for it
-// (evaluate/depth_places.hpp). Throws InputError naming the source if it cannot be opened or its
-// truth says nothing about places; Interrupted after Ctrl-C.
+// now; where nothing but depth and true poses tells of places, all depth is read for it. Throws
+// InputError naming the source if it cannot be opened or its truth says nothing about places;
+// Interrupted after Ctrl-C.
 OpenRecording open_recording(const pipeline::Config& config);
 
 // All views of a recording as one describer sees them.
