@@ -47,13 +47,6 @@ ComparedMethod info_of(const std::string& name) {
   return describer_info(name);
 }
 
-std::vector<ComparedMethod> slam_infos() {
-  return {{"off", "off", "profile default without loop closing"},
-          {"paper", "published method", "profile paper"},
-          {"usual", "bag of words", "profile usual: bag of words, 12 inliers, no odometry gate"},
-          {"default", "samewhere", "profile default"}};
-}
-
 // The work on one plan.
 class Benchmark {
  public:
@@ -64,7 +57,7 @@ class Benchmark {
       configs_.push_back(with_source(plan.config, source));
     for (const pipeline::Config& config : configs_)
       results_.recordings.push_back(recording_name(config));
-    results_.configurations = slam_infos();
+    results_.configurations = slam_configurations();
     if (wants(2, 6)) make_describers();
   }
 

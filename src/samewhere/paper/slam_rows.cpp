@@ -70,6 +70,15 @@ SlamRow row_of(const run::SlamFindings& findings, const core::Truth& truth) {
 
 }  // namespace
 
+const std::vector<ComparedMethod>& slam_configurations() {
+  static const std::vector<ComparedMethod> configurations = {
+      {"off", "off", "profile default without loop closing"},
+      {"paper", "published method", "profile paper"},
+      {"usual", "bag of words", "profile usual: bag of words, 12 inliers, no odometry gate"},
+      {"default", "samewhere", "profile default"}};
+  return configurations;
+}
+
 pipeline::Config slam_config(const pipeline::Config& base, const std::string& configuration,
                              int seed) {
   const bool is_off = configuration == "off";

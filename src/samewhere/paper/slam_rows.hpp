@@ -1,18 +1,17 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include <samewhere/paper/rows.hpp>
+#include <samewhere/paper/results.hpp>
 #include <samewhere/pipeline/config.hpp>
 
 namespace samewhere::paper {
 
 // How SLAM closes loops in Tables 6 to 8: not at all, by the published method, by bag of words and
 // geometry alone as in ORB-SLAM2, as shipped. The rest is profile `default`, but for `paper`.
-inline constexpr std::array<const char*, 4> kSlamConfigurations = {"off", "paper", "usual",
-                                                                   "default"};
+const std::vector<ComparedMethod>& slam_configurations();
 
 // The profile of a configuration with the source of `base` and this seed. The window is the
 // profile's, not that of the recognition protocol.
