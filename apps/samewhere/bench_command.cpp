@@ -159,19 +159,17 @@ int execute(const PaperCommand& command) {
   core::catch_interrupts();
   const paper::BenchmarkPlan plan = plan_of(command);
   paper::check_plan(plan);
-  const std::filesystem::path rows = std::filesystem::path(command.out) / "rows";
-  if (command.is_fresh) std::filesystem::remove_all(rows);
-  const paper::RowStore store(rows);
+  const paper::RowStore store(std::filesystem::path(command.out) / "rows", command.is_fresh);
   const PaperFolder folder(command, plan.tables);
   paper::Results results;
   const bool is_done = paper::run_benchmark(
       plan, store, results, [&](const paper::Results& so_far) { folder.write(so_far); });
   folder.write(results);
+  if (!is_done) return core::kInterruptedExit;
   folder.draw();
   folder.write(results);  // with the figures
   for (const paper::PaperTable& table : paper::make_tables(results, plan.tables))
     core::print("{}\n", paper::as_text(table));
-  if (!is_done) return core::kInterruptedExit;
   if (command.blind_spot_views > 0 && !measure_blind_spot(command, plan))
     return core::kInterruptedExit;
   core::print("{}\n", folder.page().string());

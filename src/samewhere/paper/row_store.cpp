@@ -33,8 +33,8 @@ RowSettings settings_of(const pipeline::Config& config) {
   return settings;
 }
 
-RowStore::RowStore(std::filesystem::path folder)
-    : folder_(std::move(folder)), defaults_(settings_of(pipeline::Config())) {
+RowStore::RowStore(std::filesystem::path folder, bool is_fresh)
+    : folder_(std::move(folder)), is_fresh_(is_fresh), defaults_(settings_of(pipeline::Config())) {
   if (!folder_.empty()) core::make_writable_folder(folder_);
 }
 
@@ -58,7 +58,7 @@ bool RowStore::are_same(const RowSettings& kept, const RowSettings& settings) co
 
 std::optional<nlohmann::json> RowStore::find(const std::string& name,
                                              const RowSettings& settings) const {
-  if (folder_.empty() || !core::is_there(file_of(name))) return std::nullopt;
+  if (folder_.empty() || is_fresh_ || !core::is_there(file_of(name))) return std::nullopt;
   const nlohmann::json file =
       nlohmann::json::parse(core::read_file(file_of(name)), nullptr, /*allow_exceptions=*/false);
   if (!file.is_object() || file.value("version", 0) != kRowVersion || !file.contains("rows"))

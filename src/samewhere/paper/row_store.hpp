@@ -21,8 +21,8 @@ RowSettings settings_of(const pipeline::Config& config);
 // that an interrupted benchmark goes on where it stopped.
 class RowStore {
  public:
-  // Empty: keeps nothing.
-  explicit RowStore(std::filesystem::path folder);
+  // Empty: keeps nothing. is_fresh: what the folder has counts as not measured.
+  explicit RowStore(std::filesystem::path folder, bool is_fresh = false);
 
   // The rows of this piece, if they were measured with the same settings. A setting that the file
   // does not know yet must have its default. A file that cannot be read counts as none.
@@ -35,6 +35,7 @@ class RowStore {
   bool are_same(const RowSettings& kept, const RowSettings& settings) const;
 
   std::filesystem::path folder_;
+  bool is_fresh_;
   RowSettings defaults_;
 };
 

@@ -15,6 +15,7 @@ TEST(RowStore, FindsRowsOfTheSameSettingsAlone) {
   store.keep("hall", settings, {1, 2});
   EXPECT_EQ(store.find("hall", settings), nlohmann::json({1, 2}));
   EXPECT_FALSE(store.find("kitchen", settings).has_value());
+  EXPECT_FALSE(RowStore(folder.root(), /*is_fresh=*/true).find("hall", settings).has_value());
   settings["retrieve.num_draws"] = "51";
   EXPECT_FALSE(store.find("hall", settings).has_value());
 }
