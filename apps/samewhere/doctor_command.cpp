@@ -82,10 +82,13 @@ std::vector<report::Figure> describer_figures(const describe::Config& config) {
   const double whole_ms = median_ms([&] { describer->describe(frame, picture); });
   const auto length = describer->describe(frame, picture).unit.size();
   const bool is_network = config.method == describe::Method::kAutoencoder;
+  const bool is_hog = config.method == describe::Method::kHog;
+  const std::string method = describe::kMethodNames.at(static_cast<std::size_t>(config.method));
   return {
       {"image descriptor", is_network
                                ? network::find_network("describe.network", config.network).string()
-                               : std::string("HOG")},
+                           : is_hog ? "HOG"
+                                    : method},
       {"  descriptor", fmt::format("{} numbers, describer {:016x}", length, describer->checksum())},
       {"  time", fmt::format("{:.1f} ms preprocessing + {:.1f} ms description (640x480, median of "
                              "50)",
@@ -105,7 +108,9 @@ bool is_there(const std::string& network) {
 std::vector<describe::Config> describers(const describe::Config& config) {
   std::vector<describe::Config> all(1, config);
   all.front().method = describe::Method::kHog;
-  if (config.method == describe::Method::kAutoencoder || is_there(config.network)) {
+  if (config.method != describe::Method::kHog) {
+    all.push_back(config);
+  } else if (is_there(config.network)) {
     all.push_back(config);
     all.back().method = describe::Method::kAutoencoder;
   }

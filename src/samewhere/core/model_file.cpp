@@ -7,10 +7,9 @@
 #include <samewhere/core/own_file.hpp>
 
 namespace samewhere::core {
-namespace {
 
-// The models that come with the program: of an installed one, which may have been moved, those
-// under its prefix (bin/, lib/ or lib/x86_64-linux-gnu/); else those of the source tree.
+// An installed program may have been moved: its models are looked for under its prefix (bin/, lib/
+// or lib/x86_64-linux-gnu/).
 std::filesystem::path models_folder() {
   const std::filesystem::path folder = own_file().parent_path();
   for (const char* up : {"..", "../.."}) {
@@ -21,8 +20,6 @@ std::filesystem::path models_folder() {
   }
   return SAMEWHERE_MODELS_FOLDER;
 }
-
-}  // namespace
 
 std::filesystem::path find_model(const std::string& setting, const std::string& file,
                                  const std::string& expected) {

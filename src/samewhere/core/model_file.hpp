@@ -5,6 +5,10 @@
 
 namespace samewhere::core {
 
+// The models that come with the program: share/samewhere/models of the installed one, models/ of
+// the source tree.
+std::filesystem::path models_folder();
+
 // A file that came out of training. A name without a slash is one of those that come with the
 // program (share/samewhere/models of the installed one, models/ of the source tree), or else a file
 // of the working directory: what lies there by chance is never taken for a shipped one, and a

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +7,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/similarity.hpp>
 #include <samewhere/describe/autoencoder.hpp>
+#include <samewhere/describe/network_describer.hpp>
 #include <samewhere/describe/preprocess.hpp>
 #include <samewhere/network/inference.hpp>
 
@@ -21,6 +20,7 @@ constexpr std::string_view kVersion = "autoencoder 1";
 // Where the file lies and how HOG is set does not change the code.
 std::uint64_t checksum_of(Config config, const network::NetworkFile& network) {
   config.network.clear();
+  config.trunks.clear();
   config.hog = HogConfig{};
   return core::checksum(
       fmt::format("{}\n{:016x}\n{}", kVersion, network.checksum, core::config_as_yaml(config)));
@@ -35,31 +35,6 @@ bool is_of_one_level(const cv::Mat& grey) {
 
 class Autoencoder : public Describer {
  public:
-  explicit Autoencoder(const Config& config)
-      : Autoencoder(config, network::find_network("describe.network", config.network)) {}
-
-  core::Descriptor describe(core::FrameId frame, const cv::Mat& image) override {
-    const cv::Mat prepared = preprocess(image, config_);
-    if (is_of_one_level(prepared)) {
-      return {frame, std::vector<float>(code_length_, 0.0F), checksum_};
-    }
-    const std::vector<float> code = inference_->run(network_input(prepared, input_px_));
-    const auto broken =
-        std::find_if_not(code.begin(), code.end(), [](float x) { return std::isfinite(x); });
-    if (broken != code.end()) {
-      throw core::InputError(fmt::format(
-          "{}: number {} of the network's code is {} for frame {}; expected finite numbers",
-          path_.string(), broken - code.begin(), *broken, frame.index()));
-    }
-    return {frame, core::unit(code), checksum_};
-  }
-
-  std::uint64_t checksum() const override { return checksum_; }
-
- private:
-  Autoencoder(const Config& config, const std::filesystem::path& path)
-      : Autoencoder(config, network::read_network(path)) {}
-
   Autoencoder(const Config& config, const network::NetworkFile& network)
       : config_(config),
         path_(network.path),
@@ -76,6 +51,19 @@ class Autoencoder : public Describer {
     }
   }
 
+  core::Descriptor describe(core::FrameId frame, const cv::Mat& image) override {
+    const cv::Mat prepared = preprocess(image, config_);
+    if (is_of_one_level(prepared)) {
+      return {frame, std::vector<float>(code_length_, 0.0F), checksum_};
+    }
+    const std::vector<float> code = inference_->run(network_input(prepared, input_px_));
+    require_finite(code, path_.string(), frame);
+    return {frame, core::unit(code), checksum_};
+  }
+
+  std::uint64_t checksum() const override { return checksum_; }
+
+ private:
   Config config_;
   std::filesystem::path path_;
   cv::Size input_px_;
@@ -96,7 +84,10 @@ cv::Mat network_input(const cv::Mat& prepared, cv::Size input_px) {
 }
 
 std::unique_ptr<Describer> make_autoencoder(const Config& config) {
-  return std::make_unique<Autoencoder>(config);
+  const auto network =
+      network::read_network(network::find_network("describe.network", config.network));
+  if (network.num_channels == 1) return std::make_unique<Autoencoder>(config, network);
+  return make_network_describer(network, config);
 }
 
 }  // namespace samewhere::describe

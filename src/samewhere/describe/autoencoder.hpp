@@ -12,6 +12,7 @@ namespace samewhere::describe {
 // method): the preprocessed picture, reduced to the network's input and scaled to [0, 1]. A view of
 // one grey level is all zero, whatever the network would make of it. describe() throws InputError
 // naming the network if its code is not finite.
+// A network of another input than grey is make_network_describer's (network_describer.hpp).
 // Throws InputError as network::find_network, read_network and make_inference do, and if the
 // network's output is not 1xN with N at least 2.
 std::unique_ptr<Describer> make_autoencoder(const Config& config);

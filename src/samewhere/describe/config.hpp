@@ -1,12 +1,17 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <samewhere/core/config.hpp>
 
 namespace samewhere::describe {
 
-enum class Method { kHog, kAutoencoder };
+enum class Method { kHog, kAutoencoder, kSqueezenet, kDarknet, kGem, kNetvlad };
+
+// The names of the methods, in their order.
+inline constexpr std::array kMethodNames{"hog",     "autoencoder", "squeezenet",
+                                         "darknet", "gem",         "netvlad"};
 
 struct HogConfig {
   int width_px = 160;
@@ -18,6 +23,7 @@ struct HogConfig {
 struct Config {
   Method method = Method::kHog;
   std::string network = "autoencoder.onnx";
+  std::string trunks;
   // The published "360x480" read as rows x columns, which keeps the 4:3 of the usual camera.
   int width_px = 480;
   int height_px = 360;
@@ -43,11 +49,16 @@ inline void visit_fields(HogConfig& config, core::FieldVisitor& visit) {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("method", config.method,
-        {.help = "HOG (histograms of oriented gradients) or the code of a trained network",
-         .choices = {"hog", "autoencoder"}});
+        {.help = "histograms of oriented gradients (HOG), the code of a trained network, or a "
+                 "published network's features by one of four methods to compare with",
+         .choices = {kMethodNames.begin(), kMethodNames.end()}});
   visit("network", config.network,
-        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN; a bare name: in models/, else in the "
-                 "working directory"});
+        {.help = "autoencoder: ONNX file, 1x1xHxW to 1xN, or with a card other inputs; a bare "
+                 "name: in models/, else in the working directory"});
+  visit("trunks", config.trunks,
+        {.help = "squeezenet, darknet, gem, netvlad: folder of the published networks; empty: "
+                 "models/, else $SAMEWHERE_DATA/../models",
+         .is_expert = true});
   visit("width_px", config.width_px,
         {.help = "columns of the preprocessed image", .min = 1, .max = 4096});
   visit("height_px", config.height_px,

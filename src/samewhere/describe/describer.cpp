@@ -10,6 +10,7 @@
 #include <samewhere/describe/autoencoder.hpp>
 #include <samewhere/describe/describer.hpp>
 #include <samewhere/describe/hog.hpp>
+#include <samewhere/describe/network_describer.hpp>
 #include <samewhere/describe/preprocess.hpp>
 
 namespace samewhere::describe {
@@ -21,6 +22,7 @@ constexpr std::string_view kHogVersion = "hog 1\n";
 // The network is not asked, so its name changes nothing.
 std::uint64_t checksum_of(Config config) {
   config.network.clear();
+  config.trunks.clear();
   return core::checksum(std::string(kHogVersion) + core::config_as_yaml(config));
 }
 
@@ -57,8 +59,9 @@ class HogDescriber : public Describer {
 }  // namespace
 
 std::unique_ptr<Describer> make_describer(const Config& config) {
+  if (config.method == Method::kHog) return std::make_unique<HogDescriber>(config);
   if (config.method == Method::kAutoencoder) return make_autoencoder(config);
-  return std::make_unique<HogDescriber>(config);
+  return make_baseline(kMethodNames.at(static_cast<std::size_t>(config.method)), config);
 }
 
 }  // namespace samewhere::describe

@@ -19,8 +19,8 @@ class Inference {
   Inference& operator=(const Inference&) = delete;
   virtual ~Inference() = default;
 
-  // `picture`: 32-bit floats, network.input_px (else ContractError). Throws InputError naming the
-  // network if its output is not 1xN, or if it cannot be run.
+  // `picture`: as as_blob() takes it (else ContractError). Throws InputError naming the network if
+  // its output is not 1xN, or if it cannot be run.
   virtual std::vector<float> run(const cv::Mat& picture) = 0;
 };
 

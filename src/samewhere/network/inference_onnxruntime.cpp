@@ -33,21 +33,20 @@ class OnnxRuntimeInference : public Inference {
   }
 
   std::vector<float> run(const cv::Mat& picture) override {
-    core::require(picture.type() == CV_32FC1 && picture.size() == ends_.input_px,
-                  "a network gets the picture it was made for");
+    const cv::Mat blob = as_blob(picture, ends_);
     try {
-      return code_of(picture.isContinuous() ? picture : picture.clone());
+      return code_of(blob);
     } catch (const Ort::Exception& error) {
       fail("cannot run", error);
     }
   }
 
  private:
-  std::vector<float> code_of(cv::Mat picture) {
-    const std::array<std::int64_t, 4> shape{1, 1, picture.rows, picture.cols};
+  std::vector<float> code_of(cv::Mat blob) {
+    const std::array<std::int64_t, 4> shape{1, blob.size[1], blob.size[2], blob.size[3]};
     const auto memory = Ort::MemoryInfo::CreateCpu(OrtDeviceAllocator, OrtMemTypeCPU);
     const Ort::Value input = Ort::Value::CreateTensor<float>(
-        memory, picture.ptr<float>(), picture.total(), shape.data(), shape.size());
+        memory, blob.ptr<float>(), blob.total(), shape.data(), shape.size());
     const char* const input_name = ends_.input_name.c_str();
     const char* const output_name = ends_.output_name.c_str();
     const auto outputs =

@@ -32,6 +32,7 @@ constexpr int kShapeDimension = 1;
 constexpr int kDimensionValue = 1;
 constexpr std::uint64_t kFloatElement = 1;
 constexpr std::uint64_t kMaxSide_px = 4096;
+constexpr std::uint64_t kMaxChannels = 8192;
 
 // One field of a message: a number, or bytes (text, or a message within).
 struct Field {
@@ -191,11 +192,12 @@ std::string shape_text(const End& end) {
 }
 
 bool is_picture(const End& end) {
-  const auto is_side = [](std::optional<std::uint64_t> size) {
-    return size && *size >= 1 && *size <= kMaxSide_px;
+  const auto is_at_most = [](std::optional<std::uint64_t> size, std::uint64_t max) {
+    return size && *size >= 1 && *size <= max;
   };
   return end.is_float && end.shape.size() == 4 && end.shape[0].value_or(1) == 1 &&
-         end.shape[1] == 1U && is_side(end.shape[2]) && is_side(end.shape[3]);
+         is_at_most(end.shape[1], kMaxChannels) && is_at_most(end.shape[2], kMaxSide_px) &&
+         is_at_most(end.shape[3], kMaxSide_px);
 }
 
 }  // namespace
@@ -216,14 +218,25 @@ NetworkFile parse_network(const std::filesystem::path& path, std::string bytes) 
   const End output = graph.only_end(kGraphOutput, "output");
   if (!is_picture(input)) {
     throw core::InputError(fmt::format(
-        "{}: the network's input {} is {}; expected one grey picture, 1x1xHxW with H and W at "
-        "most {}",
+        "{}: the network's input {} is {}; expected one picture, 1xCxHxW with H and W at most {}",
         path.string(), input.name, shape_text(input), kMaxSide_px));
   }
   network.input_name = input.name;
   network.output_name = output.name;
+  network.num_channels = static_cast<int>(*input.shape[1]);
   network.input_px = cv::Size(static_cast<int>(*input.shape[3]), static_cast<int>(*input.shape[2]));
   return network;
+}
+
+cv::Mat as_blob(const cv::Mat& input, const NetworkFile& network) {
+  const std::vector<int> shape{1, network.num_channels, network.input_px.height,
+                               network.input_px.width};
+  const bool is_blob = input.dims == 4 && std::equal(shape.begin(), shape.end(), input.size.p);
+  const bool is_picture =
+      input.dims == 2 && network.num_channels == 1 && input.size() == network.input_px;
+  core::require(input.type() == CV_32FC1 && (is_blob || is_picture),
+                "a network gets the picture it was made for");
+  return (input.isContinuous() ? input : input.clone()).reshape(1, shape);
 }
 
 void require_row(const NetworkFile& network, const std::vector<std::int64_t>& output_shape) {

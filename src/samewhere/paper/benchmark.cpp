@@ -22,7 +22,14 @@
 namespace samewhere::paper {
 namespace {
 
-constexpr std::array<const char*, 2> kDescribers = {kPaperMethod, "hog"};
+// Describers with the search of the published method, as tables call them.
+constexpr std::array<std::pair<const char*, const char*>, 6> kDescribers = {
+    {{kPaperMethod, "published method"},
+     {"hog", "HOG"},
+     {"squeezenet", "SqueezeNet"},
+     {"darknet", "DarkNet"},
+     {"gem", "GeM"},
+     {"netvlad", "NetVLAD"}}};
 
 bool is_detector(const std::string& name) {
   const auto& known = known_methods();
@@ -31,13 +38,14 @@ bool is_detector(const std::string& name) {
 }
 
 ComparedMethod describer_info(const std::string& name) {
-  const std::string same = "the search of the published method on other descriptors: ";
   if (name == kPaperMethod) {
     return {name, "published method",
             "profile paper: autoencoder, sampled search, NCC above 0.7, pause of 10 frames"};
   }
-  if (name == "hog") return {name, "HOG", same + "HOG"};
-  return {name, name, same + name};
+  const auto* const known = std::find_if(kDescribers.begin(), kDescribers.end(),
+                                         [&](const auto& each) { return each.first == name; });
+  return {name, known == kDescribers.end() ? name : known->second,
+          "the search of the published method on describe.method=" + name};
 }
 
 ComparedMethod info_of(const std::string& name) {
@@ -261,7 +269,8 @@ void check_plan(const BenchmarkPlan& plan) {
 }
 
 std::vector<std::string> all_methods() {
-  std::vector<std::string> names(kDescribers.begin(), kDescribers.end());
+  std::vector<std::string> names;
+  for (const auto& [name, title] : kDescribers) names.emplace_back(name);
   for (const MethodInfo& method : known_methods()) names.push_back(method.name);
   return names;
 }

@@ -18,7 +18,7 @@
 namespace samewhere::paper {
 namespace {
 
-constexpr const char* kHogName = "hog";
+constexpr std::string_view kNetworkWord = "autoencoder";  // needs its file
 constexpr int kMaxTimed = 400;
 constexpr std::string_view kTwin = "twin:";
 
@@ -73,10 +73,13 @@ std::optional<std::vector<KeptPicture>> read_and_describe(
 NamedDescriber make_named_describer(const std::string& word, const pipeline::Config& given) {
   describe::Config config = given.describe;
   if (word == kPaperMethod) return {word, describe::make_describer(config)};
-  const bool is_hog = word == kHogName;
-  config.method = is_hog ? describe::Method::kHog : describe::Method::kAutoencoder;
-  if (!is_hog) config.network = word;
-  return {is_hog ? word : network_name(word), describe::make_describer(config)};
+  const auto* const method =
+      std::find(describe::kMethodNames.begin(), describe::kMethodNames.end(), word);
+  const bool is_file = method == describe::kMethodNames.end() || word == kNetworkWord;
+  config.method = is_file ? describe::Method::kAutoencoder
+                          : static_cast<describe::Method>(method - describe::kMethodNames.begin());
+  if (is_file) config.network = word;
+  return {is_file ? network_name(word) : word, describe::make_describer(config)};
 }
 
 pipeline::Config with_source(pipeline::Config config, const std::string& source_at_window) {

@@ -25,8 +25,9 @@ struct NamedDescriber {
 // The name of the published method among the describers: the one that the config has.
 inline constexpr const char* kPaperMethod = "paper";
 
-// By a word: "paper" is the describer of the config; "hog"; or an ONNX file, which is called by its
-// name without folder and extension. Throws InputError on a network that cannot be used.
+// By a word: "paper" is the describer of the config; else the name of a method of describe, but for
+// "autoencoder"; or an ONNX file, which is called by its name without folder and extension. Throws
+// InputError on a network that cannot be used.
 NamedDescriber make_named_describer(const std::string& word, const pipeline::Config& config);
 
 // The config for "SOURCE", "SOURCE@149" or "SOURCE@10s": a recording or a twin building, and the

@@ -291,9 +291,9 @@ RecognitionEvaluation evaluate_recognition(const RecognitionFindings& findings,
 }
 
 Figure describer_figure(const describe::Config& config, std::uint64_t checksum) {
-  const std::string what = config.method == describe::Method::kHog
-                               ? "hog"
-                               : std::filesystem::path(config.network).filename().string();
+  const std::string what = config.method == describe::Method::kAutoencoder
+                               ? std::filesystem::path(config.network).filename().string()
+                               : describe::kMethodNames.at(static_cast<std::size_t>(config.method));
   return {"describer", fmt::format("{:016x}, {}", checksum, what)};
 }
 
