@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "head.hpp"
 #include "options.hpp"
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>
@@ -28,6 +29,7 @@ constexpr const char* kExamples =
     "  samewhere train --images gallery.txt --validate twin:hotel?seed=8 --out mine.onnx\n"
     "  samewhere train --images gallery.txt --out small.onnx --code-size 264 --epochs 20\n"
     "  samewhere train --images photos --out pixels.onnx --target pixels --warp false\n"
+    "  samewhere train head --help              heads on the features of published networks\n"
     "An interrupted training resumes when the same command is given again. Written beside\n"
     "FILE.onnx: FILE.json (the card), FILE.checkpoint (until training is complete).";
 
@@ -110,6 +112,7 @@ int train(const Job& job) {
 }
 
 int run(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "head") return run_head(argc, argv);
   CLI::App app("Train the network that describes a view, and export it to ONNX", "samewhere train");
   Job job{.command = as_typed(argc, argv), .version = SAMEWHERE_VERSION};
   app.add_option("--images", job.images,

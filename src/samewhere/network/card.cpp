@@ -91,7 +91,7 @@ InputCard read_input_card(const NetworkFile& network) {
   if (!core::is_there(path)) {
     throw core::InputError(fmt::format(
         "{}: the network's input {} is 1x{}x{}x{}; expected a card {} beside it that says how a "
-        "picture becomes that (docs/training.md)",
+        "picture becomes that (src/samewhere/describe/README.md)",
         network.path.string(), network.input_name, network.num_channels, network.input_px.height,
         network.input_px.width, path.filename().string()));
   }

@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kTrunkVersion = "trunk 1";
 
 constexpr const char* kWhatTrunksAre =
-    "a published network, which is not part of samewhere (docs/training.md)";
+    "a published network, which is not part of samewhere (src/samewhere/describe/README.md)";
 
 std::filesystem::path weights_of(std::filesystem::path cfg) {
   return cfg.replace_extension(".weights");

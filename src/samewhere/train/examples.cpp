@@ -67,7 +67,10 @@ void light_anew(cv::Mat& input, core::Random& random) {
   constexpr double kDarkest = 0.05;  // the cubic between two lights may swing below 0
   cv::Mat light;
   cv::resize(lights, light, input.size(), 0.0, 0.0, cv::INTER_CUBIC);
-  input = input.mul(cv::max(light, kDarkest));
+  light = cv::max(light, kDarkest);
+  const std::vector<cv::Mat> planes(static_cast<std::size_t>(input.channels()), light);
+  cv::merge(planes, light);
+  input = input.mul(light);
 }
 
 // Blur of the lens, then light and exposure, then noise of the sensor, then the range of a picture.
@@ -80,7 +83,7 @@ void photograph_again(cv::Mat& input, core::Random& random) {
   if (blur_px > kMinBlur_px) cv::GaussianBlur(input, input, cv::Size(), blur_px);
   for (int row = 0; row < input.rows; ++row) {
     auto* pixels = input.ptr<float>(row);
-    for (int column = 0; column < input.cols; ++column) {
+    for (int column = 0; column < input.cols * input.channels(); ++column) {
       const float lit = gain * std::pow(pixels[column], gamma) + bias;
       const float noisy = lit + sigma * static_cast<float>(random.gaussian());
       pixels[column] = std::clamp(noisy, 0.0F, 1.0F);
@@ -118,6 +121,17 @@ cv::Mat distorted_input(const cv::Mat& view, const Config& config, core::Random&
   light_anew(input, random);
   photograph_again(input, random);
   return input;
+}
+
+cv::Mat distorted_picture(const cv::Mat& bgr, core::Random& random) {
+  core::require(bgr.type() == CV_8UC3, "a picture to distort is BGR");
+  cv::Mat input;
+  seen_from_elsewhere(bgr, random).convertTo(input, CV_32F, 1.0 / 255.0);
+  light_anew(input, random);
+  photograph_again(input, random);
+  cv::Mat picture;
+  input.convertTo(picture, CV_8U, 255.0);
+  return picture;
 }
 
 std::vector<float> target_of(const cv::Mat& view, Target target) {

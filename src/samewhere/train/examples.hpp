@@ -27,6 +27,9 @@ cv::Mat encoder_input(const cv::Mat& view, InputSize size);
 // The view from somewhere else, in other light, by another camera: see README.md. Same form.
 cv::Mat distorted_input(const cv::Mat& view, const Config& config, core::Random& random);
 
+// The same of a picture in colour, BGR, before anything else is done with it; its size stays.
+cv::Mat distorted_picture(const cv::Mat& bgr, core::Random& random);
+
 // What is to be made of the distorted view: of the undistorted one its HOG (describe::hog, 12 x 16
 // cells), or its pixels, 60 x 80.
 std::vector<float> target_of(const cv::Mat& view, Target target);
