@@ -10,8 +10,12 @@
 #include <samewhere/core/checksum.hpp>
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/file.hpp>
+#include <samewhere/features/dbow2_vocabulary.hpp>
+#include <samewhere/features/fbow_vocabulary.hpp>
+#include <samewhere/features/gunzip.hpp>
 #include <samewhere/features/hamming.hpp>
 #include <samewhere/features/vocabulary.hpp>
+#include <samewhere/features/vocabulary_tree.hpp>
 
 namespace samewhere::features {
 namespace {
@@ -54,10 +58,6 @@ bool is_tree(const std::vector<Node>& nodes, std::size_t num_words) {
          std::string_view(is_word.data(), num_words).find('\0') == std::string_view::npos;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, std::string_view why) {
-  throw core::InputError(fmt::format("{}: {}", path.string(), why));
-}
-
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size()};
@@ -68,6 +68,32 @@ std::vector<T> values_of(std::string_view bytes, std::size_t count) {
   std::vector<T> values(count);
   std::memcpy(static_cast<void*>(values.data()), bytes.data(), sizeof(T) * count);
   return values;
+}
+
+Vocabulary read_own(std::string_view bytes, const std::filesystem::path& path) {
+  if (bytes.size() < kHeaderEnd + sizeof(std::uint64_t)) refuse_vocabulary(path, "is cut short");
+  Header header;
+  std::memcpy(&header, bytes.data() + kMagic.size(), sizeof header);
+  if (header.version != kVersion) {
+    refuse_vocabulary(path, fmt::format("is a vocabulary of version {}; expected version {}",
+                                        header.version, kVersion));
+  }
+  const std::uint64_t content_end = kHeaderEnd + std::uint64_t{header.num_nodes} * sizeof(Node) +
+                                    std::uint64_t{header.num_words} * sizeof(std::uint32_t);
+  if (bytes.size() != content_end + sizeof(std::uint64_t)) {
+    refuse_vocabulary(
+        path, fmt::format("is cut short or damaged: {} bytes; expected {} for {} words",
+                          bytes.size(), content_end + sizeof(std::uint64_t), header.num_words));
+  }
+  if (values_of<std::uint64_t>(bytes.substr(content_end), 1)[0] !=
+      core::checksum(bytes.substr(0, content_end)))
+    refuse_vocabulary(path, "is damaged: its checksum does not fit what it holds");
+  auto nodes = values_of<Node>(bytes.substr(kHeaderEnd), header.num_nodes);
+  if (!is_tree(nodes, header.num_words))
+    refuse_vocabulary(path, "is damaged: its words are no tree");
+  const std::size_t words_begin = kHeaderEnd + sizeof(Node) * nodes.size();
+  return {std::move(nodes), values_of<std::uint32_t>(bytes.substr(words_begin), header.num_words),
+          header.num_pictures};
 }
 
 }  // namespace
@@ -120,31 +146,15 @@ void save_vocabulary(const Vocabulary& vocabulary, const std::filesystem::path& 
 }
 
 Vocabulary load_vocabulary(const std::filesystem::path& path) {
-  const std::string file = core::read_file(path, core::kNetworkLimit);
-  const std::string_view bytes = file;
-  if (!bytes.starts_with(kMagic))
-    refuse(path, "is no vocabulary; expected a file that `samewhere train words` has written");
-  if (bytes.size() < kHeaderEnd + sizeof(std::uint64_t)) refuse(path, "is cut short");
-  Header header;
-  std::memcpy(&header, bytes.data() + kMagic.size(), sizeof header);
-  if (header.version != kVersion) {
-    refuse(path, fmt::format("is a vocabulary of version {}; expected version {}", header.version,
-                             kVersion));
-  }
-  const std::uint64_t content_end = kHeaderEnd + std::uint64_t{header.num_nodes} * sizeof(Node) +
-                                    std::uint64_t{header.num_words} * sizeof(std::uint32_t);
-  if (bytes.size() != content_end + sizeof(std::uint64_t)) {
-    refuse(path, fmt::format("is cut short or damaged: {} bytes; expected {} for {} words",
-                             bytes.size(), content_end + sizeof(std::uint64_t), header.num_words));
-  }
-  if (values_of<std::uint64_t>(bytes.substr(content_end), 1)[0] !=
-      core::checksum(bytes.substr(0, content_end)))
-    refuse(path, "is damaged: its checksum does not fit what it holds");
-  auto nodes = values_of<Node>(bytes.substr(kHeaderEnd), header.num_nodes);
-  if (!is_tree(nodes, header.num_words)) refuse(path, "is damaged: its words are no tree");
-  const std::size_t words_begin = kHeaderEnd + sizeof(Node) * nodes.size();
-  return {std::move(nodes), values_of<std::uint32_t>(bytes.substr(words_begin), header.num_words),
-          header.num_pictures};
+  std::string file = core::read_file(path, core::kNetworkLimit);
+  if (looks_like_gzip(file)) file = gunzip(file, core::kNetworkLimit, path);
+  if (file.starts_with(kMagic)) return read_own(file, path);
+  if (looks_like_fbow(file)) return vocabulary_of(read_fbow(file, path), path);
+  if (looks_like_dbow2_yaml(file)) return vocabulary_of(read_dbow2_yaml(file, path), path);
+  if (looks_like_dbow2_text(file)) return vocabulary_of(read_dbow2_text(file, path), path);
+  refuse_vocabulary(path,
+                    "is no vocabulary; expected a file of `samewhere train words`, of DBoW2 "
+                    "(text or YAML) or of FBoW");
 }
 
 }  // namespace samewhere::features

@@ -56,8 +56,11 @@ class Vocabulary {
 // bytes before (u64). Throws InputError if it cannot be written.
 void save_vocabulary(const Vocabulary& vocabulary, const std::filesystem::path& path);
 
-// Throws InputError naming the file and what was expected if it is none, cut short, damaged or of
-// another version.
+// A file of save_vocabulary, or of another program, told apart by what it holds: DBoW2's text and
+// YAML (dbow2_vocabulary.hpp), FBoW's (fbow_vocabulary.hpp), each also compressed by gzip. Words of
+// others fit only descriptors of the same comparisons of pixels: those of OpenCV's ORB are not ours
+// (pattern.hpp). Throws InputError naming the file and what was expected if it is none, cut short,
+// damaged or of another version.
 Vocabulary load_vocabulary(const std::filesystem::path& path);
 
 }  // namespace samewhere::features

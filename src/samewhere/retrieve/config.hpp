@@ -57,8 +57,8 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("word_candidates", config.word_candidates,
         {.help = "further candidates, by visual words; 0: none", .min = 0, .max = 1000});
   visit("vocabulary", config.vocabulary,
-        {.help = "word_candidates: file of `samewhere train words`; a bare name: in models/, else "
-                 "in the working directory"});
+        {.help = "word_candidates: file of `samewhere train words`, DBoW2 or FBoW; a bare name: in "
+                 "models/, else in the working directory"});
   visit("window_s", config.window_s,
         {.help = "views of the last so many seconds are no candidates", .min = 0.0, .max = 1e6});
   visit("window_frames", config.window_frames,

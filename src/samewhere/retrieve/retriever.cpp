@@ -30,9 +30,9 @@ Retriever::Retriever(const Config& config, std::uint64_t seed)
     : config_(config), seed_(seed), store_(make_store(config)) {
   core::require(config.window_frames >= 0, "window_s is resolved into window_frames");
   if (config.word_candidates > 0) {
-    words_.emplace(
-        std::make_shared<const features::Vocabulary>(features::load_vocabulary(core::find_model(
-            "retrieve.vocabulary", config.vocabulary, "a file of `samewhere train words`"))));
+    words_.emplace(std::make_shared<const features::Vocabulary>(features::load_vocabulary(
+        core::find_model("retrieve.vocabulary", config.vocabulary,
+                         "a file of `samewhere train words`, DBoW2 or FBoW"))));
   }
 }
 
