@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include <samewhere/core/errors.hpp>
+#include <samewhere/features/orb.hpp>
+#include <samewhere/paper/methods/bag_of_words.hpp>
+#include <samewhere/paper/methods/consistency.hpp>
+#include <samewhere/paper/methods/inlier_check.hpp>
+#include <samewhere/paper/methods/words_method.hpp>
+
+namespace samewhere::paper {
+namespace {
+
+constexpr int kNumFeatures = 1000;
+constexpr double kMinSharedRatio = 0.8;        // of the largest number of shared words
+constexpr double kMinAccumulatedRatio = 0.75;  // of the largest accumulated score
+constexpr int kNeighbourFrames = 5;            // to either side: ten, as ORB-SLAM2 takes keyframes
+constexpr int kNumConsistent = 3;              // queries before that agree
+constexpr int kMinInliers = 20;
+constexpr int kPauseFrames = 10;  // after a loop
+constexpr int kNumReranked = 10;
+
+// ORB-SLAM2 matches words of loops within 50 bits and with a ratio of 0.75.
+InlierCheck words_check(const pipeline::Config& base) {
+  InlierCheck check{.features = features::Config{},
+                    .min_matches = kMinInliers,
+                    .seed = static_cast<std::uint64_t>(base.seed)};
+  check.features.num_features = kNumFeatures;
+  check.features.max_distance_bits = 50;
+  check.features.max_ratio = 0.75;
+  return check;
+}
+
+// The views of a sequence and the score of each query with those outside the window.
+class WordsMethod : public Method {
+ public:
+  explicit WordsMethod(const pipeline::Config& base)
+      : window_frames_(base.retrieve.window_frames),
+        check_(words_check(base)),
+        vocabulary_(vocabulary_of(base)),
+        file_(vocabulary_->num_words(), BagNorm::kL1) {
+    core::require(window_frames_ >= 0, "the window is in frames");
+  }
+
+  void see(const core::Frame& frame) override {
+    views_.push_back(features::extract(frame, check_.features));
+    bags_.push_back(tf_idf(*vocabulary_, views_.back().features->descriptors));
+    judge(file_.search(bags_.back(), std::max(0, query() - window_frames_)));
+    file_.append(bags_.back());
+  }
+
+  Findings findings() override { return std::move(findings_); }
+
+ protected:
+  // The newest view, with views that share words with it.
+  virtual void judge(const std::vector<ScoredBag>& scored) = 0;
+
+  int query() const { return static_cast<int>(views_.size()) - 1; }
+  const BagOfWords& bag(int position) const { return bags_[static_cast<std::size_t>(position)]; }
+  int inliers_of(int match) const {
+    return count_inliers(views_.back(), views_[static_cast<std::size_t>(match)], check_);
+  }
+
+  Findings findings_;
+
+ private:
+  int window_frames_;
+  InlierCheck check_;
+  std::shared_ptr<const features::Vocabulary> vocabulary_;
+  InvertedFile file_;
+  std::vector<features::View> views_;
+  std::vector<BagOfWords> bags_;
+};
+
+class OrbSlamWords : public WordsMethod {
+ public:
+  using WordsMethod::WordsMethod;
+
+ private:
+  void judge(const std::vector<ScoredBag>& scored) override {
+    const std::vector<ScoredBag> best = best_of(scored, 1);
+    if (!best.empty()) {
+      findings_.matches.push_back({query(), best.front().position, best.front().score});
+    }
+    if (query() < pause_end_) return;
+    for (const ScoredBag& candidate : consistency_.consistent_of(candidates_of(scored))) {
+      if (inliers_of(candidate.position) < kMinInliers) continue;
+      findings_.accepted.push_back({query(), candidate.position, candidate.score});
+      pause_end_ = query() + kPauseFrames;
+      return;
+    }
+  }
+
+  // What a view near the query scores at least: a candidate scores no less.
+  double min_score() const {
+    double least = 1.0;
+    for (int i = std::max(0, query() - 2 * kNeighbourFrames); i < query(); ++i)
+      least = std::min(least, score_of(bag(query()), bag(i), BagNorm::kL1));
+    return least;
+  }
+
+  std::vector<ScoredBag> candidates_of(std::vector<ScoredBag> scored) const {
+    int most_shared = 0;
+    for (const ScoredBag& found : scored) most_shared = std::max(most_shared, found.num_shared);
+    std::erase_if(scored, [&](const ScoredBag& found) {
+      return found.num_shared <= kMinSharedRatio * most_shared;
+    });
+    return accumulated_best(scored, min_score());
+  }
+
+  // Of each candidate's neighbourhood the best, where that scores nearly as well as the best one.
+  static std::vector<ScoredBag> accumulated_best(const std::vector<ScoredBag>& scored,
+                                                 double min_score) {
+    struct Group {
+      double accumulated = 0.0;
+      ScoredBag best;
+    };
+    std::vector<Group> groups;
+    double most = min_score;
+    for (const ScoredBag& centre : scored) {
+      if (centre.score < min_score) continue;
+      Group group{.accumulated = 0.0, .best = centre};
+      for (const ScoredBag& other : scored) {
+        if (std::abs(other.position - centre.position) > kNeighbourFrames) continue;
+        group.accumulated += other.score;
+        if (other.score > group.best.score) group.best = other;
+      }
+      most = std::max(most, group.accumulated);
+      groups.push_back(group);
+    }
+    std::vector<ScoredBag> candidates;
+    for (const Group& group : groups) {
+      const bool is_new = candidates.empty() || candidates.back().position != group.best.position;
+      if (is_new && group.accumulated > kMinAccumulatedRatio * most)
+        candidates.push_back(group.best);
+    }
+    return best_of(candidates, static_cast<int>(candidates.size()));
+  }
+
+  Consistency consistency_{2 * kNeighbourFrames, kNumConsistent};
+  int pause_end_ = 0;
+};
+
+class RerankedWords : public WordsMethod {
+ public:
+  using WordsMethod::WordsMethod;
+
+ private:
+  void judge(const std::vector<ScoredBag>& scored) override {
+    evaluate::Match best{.query = query(), .match = -1, .score = -1.0};
+    for (const ScoredBag& candidate : best_of(scored, kNumReranked)) {
+      const int num_inliers = inliers_of(candidate.position);
+      if (num_inliers <= best.score) continue;
+      best.match = candidate.position;
+      best.score = num_inliers;
+    }
+    if (best.match < 0) return;
+    findings_.matches.push_back(best);
+    if (best.score >= kMinInliers) findings_.accepted.push_back(best);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_words_method(const pipeline::Config& base) {
+  return std::make_unique<OrbSlamWords>(base);
+}
+
+std::unique_ptr<Method> make_words_geometry_method(const pipeline::Config& base) {
+  return std::make_unique<RerankedWords>(base);
+}
+
+}  // namespace samewhere::paper
