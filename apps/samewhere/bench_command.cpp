@@ -57,7 +57,8 @@ paper::BenchmarkPlan plan_of(const PaperCommand& command) {
   paper::BenchmarkPlan plan{.config = load(command.config),
                             .sources = command.sources,
                             .methods = command.methods,
-                            .is_strict = !command.sources.empty(),
+                            .needs_all_sources = !command.sources.empty(),
+                            .needs_all_methods = !command.methods.empty(),
                             .tables = paper::parse_table_numbers(command.tables),
                             .searches = {},
                             .num_slam_runs = command.num_slam_runs};

@@ -95,7 +95,7 @@ class Benchmark {
       try {
         if (!is_detector(name)) describers_.push_back(make_named_describer(name, plan_.config));
       } catch (const core::InputError& error) {
-        if (plan_.is_strict) throw;
+        if (plan_.needs_all_methods) throw;
         note_missing("", name, error.what());
         continue;
       }
@@ -147,7 +147,7 @@ class Benchmark {
     try {
       return measure_recognition(config, open_recording(config), missing);
     } catch (const core::InputError& error) {
-      if (plan_.is_strict) throw;
+      if (plan_.needs_all_sources) throw;
       note_missing(recording_name(config), "recognition", error.what());
     }
     return true;
@@ -243,14 +243,14 @@ void check_sources(const BenchmarkPlan& plan) {
     }
     const auto opened = run::open_source(config);
     const bool needs_slam = *plan.tables.rbegin() > 6;
-    if (plan.is_strict && !needs_slam) require_place_truth(*opened, config);
+    if (plan.needs_all_sources && !needs_slam) require_place_truth(*opened, config);
   }
 }
 
 void check_methods(const BenchmarkPlan& plan) {
   std::set<std::string> names;
   for (const std::string& method : plan.methods) {
-    const std::string name = is_detector(method) || !plan.is_strict
+    const std::string name = is_detector(method) || !plan.needs_all_methods
                                  ? method
                                  : make_named_describer(method, plan.config).name;
     if (!names.insert(name).second) {

@@ -18,8 +18,9 @@ struct BenchmarkPlan {
   std::vector<std::string> sources;  // SOURCE, SOURCE@149, SOURCE@10s
   // Detectors (methods/methods.hpp) and describers (described_recording.hpp).
   std::vector<std::string> methods;
-  // A method or sequence that cannot be used is an error, else it is a missing row.
-  bool is_strict = false;
+  // A source, or a method, that cannot be used is an error, else it is a missing row.
+  bool needs_all_sources = false;
+  bool needs_all_methods = false;
   PaperTableNumbers tables;
   PaperPlan searches;     // of the published method; the other describers have one number of draws
   int num_slam_runs = 3;  // seeds 0, 1, ...
@@ -35,7 +36,7 @@ void check_plan(const BenchmarkPlan& plan);
 // Measures what `store` does not have yet, and keeps it there piece by piece: first recognition,
 // then SLAM, one seed of all sequences after the other. `on_news` is told all results after each
 // piece. False after Ctrl-C. Throws InputError on a source, method or setting that cannot be used
-// (is_strict).
+// and is needed.
 bool run_benchmark(const BenchmarkPlan& plan, const RowStore& store, Results& results,
                    const std::function<void(const Results&)>& on_news);
 

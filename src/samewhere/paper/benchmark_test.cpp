@@ -35,7 +35,8 @@ class PaperBenchmark : public testing::Test {
     return {.config = pipeline::profile("paper"),
             .sources = {(folder_.root() / "walk").string() + "@2"},
             .methods = {"hog", "ours"},
-            .is_strict = true,
+            .needs_all_sources = true,
+            .needs_all_methods = true,
             .tables = {2, 4},
             .searches = {.num_draws = {10, 50}, .num_seeds = 2},
             .num_slam_runs = 1};
@@ -87,7 +88,7 @@ TEST_F(PaperBenchmark, WhatCannotBeUsedIsAnErrorOrAMissingRow) {
   BenchmarkPlan bad = plan();
   bad.methods = {"hog", "/nowhere/net.onnx"};
   EXPECT_THROW(check_plan(bad), core::InputError);
-  bad.is_strict = false;
+  bad.needs_all_methods = false;
   EXPECT_NO_THROW(check_plan(bad));
   const Results results = run(bad);
   ASSERT_EQ(results.missing.size(), 1u);
