@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "../samewhere/view_options.hpp"
 #include "graph.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
@@ -31,6 +33,8 @@ constexpr const char* kExamples =
     "      --remap camera_info:=/camera/color/camera_info\n"
     "      --remap depth:=/camera/aligned_depth_to_color/image_raw\n"
     "  samewhere dds --map building.sw --localize --trajectory run.tum\n"
+    "  samewhere dds --view --at 0.0.0.0:8080  watched in a browser, from other machines with a\n"
+    "      token\n"
     "Commands, std_msgs/String on samewhere/command: save_map FILE, load_map FILE, localize FILE,\n"
     "reset, pause, resume. Answers are in /diagnostics.";
 
@@ -42,6 +46,7 @@ struct Job {
   std::string trajectory;
   Options options;
   bool is_localizing = false;
+  app::ViewOptions view;
   bool lists_settings = false;
   bool prints_idl = false;
 };
@@ -111,10 +116,11 @@ int work(const Job& job) {
   options.settings = settings;
   options.map_use = job.is_localizing ? MapUse::kLocalize : MapUse::kExtend;
   core::catch_interrupts();
+  const std::unique_ptr<view::LiveView> viewer = app::open_live_view(job.view);
   const node::TopicNames names(job.node_namespace, job.remappings);
   Graph graph(job.domain);
   GraphPublisher publisher(graph, names);
-  node::NodeThread node(config, options, publisher);
+  node::NodeThread node(config, options, publisher, viewer.get());
   subscribe(graph, names, config, node);
   constexpr double kTick_s = 0.5;
   while (!core::is_interrupted()) {
@@ -143,6 +149,7 @@ int run(int argc, char** argv) {
   app.add_option("--map", job.options.map, "a saved map to begin in")->check(CLI::ExistingFile);
   app.add_flag("--localize", job.is_localizing, "the map of --map stays as it is");
   app.add_option("--trajectory", job.trajectory, "TUM file written at the end");
+  app::add_view_options(app, job.view, "show the node in a browser");
   app.add_flag("--settings", job.lists_settings, "print the settings of the node and end");
   app.add_flag("--idl", job.prints_idl, "print the types of all messages as IDL and end");
   app.footer(kExamples);

@@ -47,7 +47,7 @@ struct RunCommand {
   bool is_forced = false;  // may replace the results of an earlier run
   ConfigOptions config;
   FigureOptions figures;
-  ViewOptions view;  // run only
+  ViewOptions view;
 };
 
 // A folder name that tells where the run came from: the last part of a path, the preset of a twin.
@@ -188,7 +188,8 @@ run::RunOutcome work_on(std::unique_ptr<core::Source> source, const RunCommand& 
                         const pipeline::Config& config, Work work, const Listeners& listeners) {
   if (work == Work::kRecognition)
     return run::run_recognition(
-        std::move(source), config, [&] { listeners.begin(); }, command.figures.is_quiet);
+        std::move(source), config, [&] { listeners.begin(); }, command.figures.is_quiet,
+        listeners.watcher);
   return run::run_slam(
       std::move(source), config,
       {.known = command.map, .is_known_fixed = command.localize, .begin = listeners.begin},
@@ -320,7 +321,9 @@ CLI::App* add_source_command(CLI::App& app, const char* name, const char* what, 
   if (work == Work::kSlam) add_fov_option(*sub, *command);
   if (work == Work::kSlam) add_odometry_option(*sub, *command);
   if (work == Work::kSlam) add_map_options(*sub, *command);
-  if (work == Work::kSlam) add_view_options(*sub, command->view);
+  add_view_options(*sub, command->view,
+                   "show the run in a browser while it goes on; the results are the same. The "
+                   "program ends when the page is closed");
   sub->callback([command, work, &exit_code] { exit_code = execute(*command, work); });
   return sub;
 }
@@ -361,6 +364,7 @@ void add_loops_command(CLI::App& app, int& exit_code) {
           "numbers\n"
           "  samewhere loops flat --prior unique                      no two places look alike\n"
           "  samewhere loops corridor --profile paper                 the published method\n"
+          "  samewhere loops flat --view                              watched in a browser\n"
           "Precision and recall are printed where the folder holds same_place.txt or "
           "same_place.pgm.");
 }

@@ -8,20 +8,20 @@
 #include <samewhere/core/channel.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/view/finished_view.hpp>
+#include <samewhere/view/place.hpp>
 
 namespace samewhere::app {
 namespace {
 
 struct ViewCommand {
   std::vector<std::string> paths;
-  std::string place = "any";
-  std::string token;
+  PageOptions page;
 };
 
 void show(const ViewCommand& command) {
-  const view::Place place = view::parse_place(command.place, "--at");
+  const view::Place place = view::parse_place(command.page.place, "--at");
   const std::vector<std::filesystem::path> paths(command.paths.begin(), command.paths.end());
-  const view::FinishedView viewer(paths, place, command.token);
+  const view::FinishedView viewer(paths, place, command.page.token);
   print_view_url(viewer.url());
   core::catch_interrupts();
   core::Channel<int> never(1);
@@ -37,9 +37,7 @@ void add_view_command(CLI::App& app) {
   sub->add_option("RUN", command->paths,
                   "folder that `samewhere run` or `samewhere loops` wrote, or a map file alone")
       ->required();
-  sub->add_option("--at", command->place,
-                  "PORT or ADDRESS:PORT, by default port 8080 of this machine, or a free one");
-  add_token_option(*sub, command->token);
+  add_page_options(*sub, command->page);
   sub->callback([command] { show(*command); });
   sub->footer(
       "Examples:\n"

@@ -7,17 +7,25 @@
 
 #include <samewhere/view/live_view.hpp>
 
+// Of `samewhere` and `samewhere-dds`.
+
 namespace samewhere::app {
 
-// Where a viewer is served: --view[=PLACE] and --view-token.
-struct ViewOptions {
-  std::string place;  // empty: no viewer
+// Where a page is served: --at and --token.
+struct PageOptions {
+  std::string place = "any";
   std::string token;
 };
 
-// --view-token.
-CLI::Option* add_token_option(CLI::App& command, std::string& token);
-void add_view_options(CLI::App& command, ViewOptions& options);
+struct ViewOptions {
+  bool is_wanted = false;  // --view
+  PageOptions page;
+};
+
+// With `view`, they need that option.
+void add_page_options(CLI::App& command, PageOptions& options, CLI::Option* view = nullptr);
+// --view and the options of its page; `help` is that of --view.
+void add_view_options(CLI::App& command, ViewOptions& options, const std::string& help);
 
 // Tells on stderr where to look.
 void print_view_url(const std::string& url);

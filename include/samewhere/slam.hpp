@@ -132,6 +132,9 @@ class Slam {
 
  private:
   class Session;
+  explicit Slam(std::unique_ptr<Session> session);
+  friend struct SlamMaker;  // not part of the interface
+
   std::unique_ptr<Session> session_;
 };
 

@@ -1,6 +1,7 @@
 // samewhere_node: SLAM as a node of ROS 1. Private parameters: map, localize, trajectory, profile,
-// map_file; SECTION/KEY for each setting.
+// map_file; view (true, PORT or ADDRESS:PORT) and view_token; SECTION/KEY for each setting.
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@
 #include <samewhere/node/node_thread.hpp>
 #include <samewhere/node/topics.hpp>
 #include <samewhere/node/trajectory_file.hpp>
+#include <samewhere/view/access.hpp>
+#include <samewhere/view/live_view.hpp>
 
 namespace samewhere::ros1 {
 namespace {
@@ -165,6 +168,25 @@ class Services {
   std::vector<ros::ServiceServer> servers_;
 };
 
+// A parameter of any single type as text; empty: it is not set.
+std::string own_text(const ros::NodeHandle& own, const std::string& name) {
+  XmlRpc::XmlRpcValue value;
+  return own.getParam(name, value) ? text_of(value) : "";
+}
+
+// Nothing if none is wanted.
+std::unique_ptr<view::LiveView> open_view(const ros::NodeHandle& own) {
+  const std::string place = own_text(own, "view");
+  if (place.empty() || place == "false") return nullptr;
+  const std::string token = own_text(own, "view_token");
+  const std::string error = token.empty() ? "" : view::token_error(token);
+  if (!error.empty()) throw core::InputError("~view_token: " + error);
+  auto viewer = std::make_unique<view::LiveView>(
+      view::parse_place(place == "true" ? "any" : place, "~view"), token);
+  core::note("look at " + viewer->url());
+  return viewer;
+}
+
 int run() {
   ros::NodeHandle handle;
   ros::NodeHandle own("~");
@@ -176,8 +198,9 @@ int run() {
       .map = map,
       .map_use = own.param("localize", false) ? MapUse::kLocalize : MapUse::kExtend};
   core::catch_interrupts();
+  const std::unique_ptr<view::LiveView> viewer = open_view(own);
   RosPublisher publisher(handle);
-  node::NodeThread node(config, options, publisher);
+  node::NodeThread node(config, options, publisher, viewer.get());
   const std::vector<ros::Subscriber> subscribers = subscribe(handle, config, node);
   const Services services(own, node);
   constexpr std::uint32_t kThreads = 2;  // a service waits for its answer while images come

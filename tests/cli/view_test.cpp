@@ -49,7 +49,7 @@ constexpr const char* kThreeFrames = "run 'twin:office-loop?seed=2' --set twin.n
 TEST_F(View, PortThatIsTakenIsBadInputBeforeAnythingIsWritten) {
   const TakenPort taken;
   const Outcome outcome =
-      run(fmt::format("{} --out {} --view={}", kThreeFrames, quoted(path("run")), taken.number()));
+      run(fmt::format("{} --out {} --view --at {}", kThreeFrames, quoted(path("run")), taken.number()));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find(fmt::format("127.0.0.1:{}: cannot be served", taken.number())),
             std::string::npos)
@@ -67,7 +67,7 @@ TEST_F(View, RunWithoutAPageEndsByItself) {
 
 TEST_F(View, OtherMachinesNeedAToken) {
   const Outcome outcome = run(
-      fmt::format("{} --out {} --view=0.0.0.0:38471 --quiet", kThreeFrames, quoted(path("run"))));
+      fmt::format("{} --out {} --view --at 0.0.0.0:38471 --quiet", kThreeFrames, quoted(path("run"))));
   EXPECT_EQ(outcome.exit_code, 0);
   const std::size_t at = outcome.err.find("?token=");
   ASSERT_NE(at, std::string::npos) << outcome.err;
@@ -77,8 +77,8 @@ TEST_F(View, OtherMachinesNeedAToken) {
 TEST_F(View, BadOptionsAreBadInput) {
   const std::string out = kThreeFrames + std::string("--out ") + quoted(path("run"));
   for (const char* bad :
-       {"--view=0", "--view=somewhere:80", "--view=99999", "--view-token secret-token",
-        "--view --view-token short", "--view --view-token 'with a space'"}) {
+       {"--view --at 0", "--view --at somewhere:80", "--view --at 99999", "--at 8080",
+        "--token secret-token", "--view --token short", "--view --token 'with a space'"}) {
     const Outcome outcome = run(out + " " + bad);
     EXPECT_EQ(outcome.exit_code, 2) << bad;
     EXPECT_FALSE(std::filesystem::exists(path("run"))) << bad;

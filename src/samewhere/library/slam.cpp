@@ -13,6 +13,7 @@
 #include <samewhere/library/kept_map.hpp>
 #include <samewhere/library/live_pose.hpp>
 #include <samewhere/library/map_content.hpp>
+#include <samewhere/library/watched_slam.hpp>
 #include <samewhere/run/mapped_slam.hpp>
 #include <samewhere/run/open_source.hpp>
 #include <samewhere/slam.hpp>
@@ -51,8 +52,11 @@ run::MapPlan plan_of(const Options& options) {
 
 class Slam::Session {
  public:
-  Session(const Calibration& calibration, const Options& options)
-      : calibration_(calibration), options_(options), config_(config_of(options)) {
+  Session(const Calibration& calibration, const Options& options, run::Watcher* watcher)
+      : calibration_(calibration),
+        options_(options),
+        config_(config_of(options)),
+        watcher_(watcher) {
     cv::setNumThreads(1);
     begin(plan_of(options_));
   }
@@ -69,6 +73,7 @@ class Slam::Session {
       live_.update(mapped_->slam());
       events = log_->update(mapped_->slam());
       publish(mapped_->slam().visible_map());
+      if (watcher_ != nullptr) watcher_->see_frame(taken, mapped_->slam());
       return result();
     });
     tell(std::move(events));
@@ -147,7 +152,8 @@ class Slam::Session {
       plan.watch = [kept](const auto& map, const auto& news) { kept->note(map, news); };
     const auto depth_from =
         intake->is_without_scale() ? pipeline::DepthFrom::kMotion : pipeline::DepthFrom::kSensor;
-    auto mapped = std::make_unique<run::MappedSlam>(config_, depth_from, plan);
+    auto mapped =
+        std::make_unique<run::MappedSlam>(config_, depth_from, run::watched(plan, watcher_));
     if (options_.never_wait) mapped->never_wait();
     mapped_ = std::move(mapped);
     kept_ = std::move(kept);
@@ -159,6 +165,13 @@ class Slam::Session {
     door_.reopen();
     events_.set({});
     map_.set(library::snapshot(mapped_->slam().visible_map(), mapped_->is_metric()));
+    if (watcher_ != nullptr) tell_begin();
+  }
+
+  void tell_begin() {
+    core::SourceInfo info = intake_->info();
+    info.is_live = true;
+    watcher_->begin(info, config_, !mapped_->is_metric());
   }
 
   void publish(const scene::MapVersion& map) {
@@ -198,6 +211,7 @@ class Slam::Session {
   Calibration calibration_;
   Options options_;
   pipeline::Config config_;
+  run::Watcher* watcher_;
   std::unique_ptr<library::FrameIntake> intake_;
   library::LivePose live_;
   std::optional<library::EventLog> log_;
@@ -210,8 +224,23 @@ class Slam::Session {
 };
 
 Slam::Slam(const Calibration& calibration, const Options& options)
-    : session_(
-          library::at_border([&] { return std::make_unique<Session>(calibration, options); })) {}
+    : Slam(library::at_border(
+          [&] { return std::make_unique<Session>(calibration, options, nullptr); })) {}
+
+Slam::Slam(std::unique_ptr<Session> session) : session_(std::move(session)) {}
+
+struct SlamMaker {
+  static std::unique_ptr<Slam> make(const Calibration& calibration, const Options& options,
+                                    run::Watcher* watcher) {
+    return std::unique_ptr<Slam>(
+        new Slam(std::make_unique<Slam::Session>(calibration, options, watcher)));
+  }
+};
+
+std::unique_ptr<Slam> library::watched_slam(const Calibration& calibration, const Options& options,
+                                            run::Watcher* watcher) {
+  return at_border([&] { return SlamMaker::make(calibration, options, watcher); });
+}
 
 Slam::~Slam() = default;
 

@@ -8,6 +8,7 @@
 #include <samewhere/core/printable.hpp>
 #include <samewhere/input/message_image.hpp>
 #include <samewhere/library/convert.hpp>
+#include <samewhere/library/watched_slam.hpp>
 #include <samewhere/node/node.hpp>
 #include <samewhere/node/outputs.hpp>
 #include <samewhere/node/transforms.hpp>
@@ -68,10 +69,12 @@ std::uint8_t level_of(const std::optional<Tracked>& newest) {
 
 }  // namespace
 
-Node::Node(const Config& config, const Options& options, Publisher& publisher)
+Node::Node(const Config& config, const Options& options, Publisher& publisher,
+           run::Watcher* watcher)
     : config_(config),
       options_(options_with(options, config.never_wait)),
       publisher_(publisher),
+      watcher_(watcher),
       pairing_(config.cameras != Cameras::kMono, config.pair_tolerance_s,
                static_cast<std::size_t>(config.queue_frames)),
       startup_(config) {
@@ -183,9 +186,9 @@ void Node::try_to_start() {
   try {
     const auto setup = startup_->setup(static_transforms_);
     if (!setup) return set_status(setup.error());
-    slam_ = std::make_unique<Slam>(setup->calibration, options_);
+    slam_ = library::watched_slam(setup->calibration, options_, watcher_);
     setup_ = *setup;
-    prepare_grids();
+    prepare_grid();
   } catch (const std::exception& error) {
     why_not_started_ = core::printable_line(error.what(), core::kMaxMessage);
     refused(why_not_started_);
@@ -198,12 +201,14 @@ void Node::try_to_start() {
   for (const FrameSet& waiting : frames) track(waiting);
 }
 
-void Node::prepare_grids() {
+void Node::prepare_grid() {
   if (config_.cameras != Cameras::kDepth || config_.grid_period_s == 0.0) return;
-  const dense::Config config =
-      library::config_of(options_.profile, options_.settings, options_.prior).dense;
-  depths_.emplace(config, setup_->first_camera);
-  grids_ = std::make_unique<GridThread>(config, options_.threads, publisher_);
+  const pipeline::Config config =
+      library::config_of(options_.profile, options_.settings, options_.prior);
+  grid_.emplace(GridOutput::Settings{.dense = config.dense,
+                                     .period_s = config_.grid_period_s,
+                                     .has_thread = options_.threads},
+                setup_->first_camera, publisher_);
 }
 
 void Node::track(const FrameSet& frame) {
@@ -217,7 +222,7 @@ void Node::track(const FrameSet& frame) {
     given.depth = view_of(images[1]);
   }
   newest_ = slam_->track(given);
-  if (depths_) depths_->take_frame(given.stamp_s, images[1]);
+  if (grid_) grid_->take_frame(given.stamp_s, images[1]);
   ++counts_.num_frames;
   frames_.update(*newest_, setup_->camera_from_base);
   publish_frames(*newest_);
@@ -267,7 +272,7 @@ void Node::publish_map_if_due(const Tracked& tracked) {
   publish_state();
   const std::shared_ptr<const Map> map = slam_->map();
   const messages::Header header = header_of(config_.map_frame, tracked.stamp_s);
-  publish_grid_if_due(header, map);
+  if (grid_) grid_->make_if_due(header, map);
   if (map->version() == map_version_told_) return;
   map_version_told_ = map->version();
   publisher_.path(path_message(header, *map, setup_->camera_from_base));
@@ -275,23 +280,10 @@ void Node::publish_map_if_due(const Tracked& tracked) {
       landmarks_message(header, *map, static_cast<std::size_t>(config_.max_landmarks)));
 }
 
-void Node::publish_grid_if_due(const messages::Header& header,
-                               const std::shared_ptr<const Map>& map) {
-  if (!depths_ || depths_->all().empty() || map->version() == grid_version_told_) return;
-  const double stamp_s = messages::seconds(header.stamp);
-  const double since_s = stamp_s - grid_told_s_.value_or(-INFINITY);
-  if (since_s >= 0.0 && since_s < config_.grid_period_s) return;
-  grid_told_s_ = stamp_s;
-  grid_version_told_ = map->version();
-  grids_->make({header, map, depths_->all()});
-}
-
 void Node::publish_events() {
   messages::DiagnosticArray array{.header = header_of("", newest_ ? newest_->stamp_s : 0.0)};
   for (const Event& event : slam_->take_events()) {
-    if (const auto* inserted = std::get_if<KeyframeInserted>(&event.what); inserted && depths_)
-      depths_->take_keyframe(*inserted);
-    if (std::holds_alternative<MapDiscarded>(event.what) && depths_) depths_->clear();
+    if (grid_) grid_->take_event(event);
     if (auto status = event_message(event)) array.status.push_back(std::move(*status));
   }
   if (!array.status.empty()) publisher_.diagnostics(array);
@@ -313,7 +305,7 @@ void Node::publish_state() {
     state.values.push_back({"keyframes", fmt::format("{}", map->num_keyframes())});
     state.values.push_back({"scale", map->is_metric() ? "metres" : "unknown"});
     state.values.push_back({"base_frame", setup_->base_frame});
-    if (grids_) state.values.push_back({"no_grid", grids_->why_none()});
+    if (grid_) state.values.push_back({"no_grid", grid_->why_none()});
   }
   if (newest_) state.values.push_back({"inliers", fmt::format("{}", newest_->num_inliers)});
   publisher_.diagnostics(
@@ -373,9 +365,7 @@ std::string Node::begin_in(const std::filesystem::path& map, MapUse use) {
   waiting_for_odometry_.reset();
   map_told_s_.reset();
   map_version_told_ = 0;
-  if (depths_) depths_->clear();
-  grid_told_s_.reset();
-  grid_version_told_ = 0;
+  if (grid_) grid_->clear();
   return map.empty() ? "a new session with an empty map"
                      : "a new session in " + map.string() +
                            (use == MapUse::kLocalize ? ", which stays as it is" : "");
@@ -389,9 +379,9 @@ std::vector<StampedPose> Node::finish() {
     publish_events();
     trajectory = slam_->trajectory();
     map_told_s_.reset();
-    grid_told_s_.reset();
+    if (grid_) grid_->hurry();
     if (newest_) publish_map_if_due(*newest_);
-    grids_.reset();  // the last grid is made
+    grid_.reset();  // the last grid is made
   } catch (const std::exception& error) {
     refused(error.what());
   }

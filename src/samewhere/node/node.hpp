@@ -8,13 +8,13 @@
 
 #include <samewhere/input/transforms.hpp>
 #include <samewhere/node/config.hpp>
-#include <samewhere/node/grid_thread.hpp>
+#include <samewhere/node/grid_output.hpp>
 #include <samewhere/node/incoming.hpp>
-#include <samewhere/node/keyframe_depths.hpp>
 #include <samewhere/node/live_frames.hpp>
 #include <samewhere/node/pairing.hpp>
 #include <samewhere/node/publisher.hpp>
 #include <samewhere/node/startup.hpp>
+#include <samewhere/run/watcher.hpp>
 #include <samewhere/slam.hpp>
 
 namespace samewhere::node {
@@ -25,8 +25,9 @@ namespace samewhere::node {
 class Node {
  public:
   // `options`: how the session works; never_wait is that of `config`, on_event is not used. The
-  // publisher outlives the node. Settings are checked with the first frame.
-  Node(const Config& config, const Options& options, Publisher& publisher);
+  // publisher and the watcher, if any, outlive the node. Settings are checked with the first frame.
+  Node(const Config& config, const Options& options, Publisher& publisher,
+       run::Watcher* watcher = nullptr);
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
   ~Node();
@@ -57,7 +58,7 @@ class Node {
 
   void use(FrameSet frame);
   void try_to_start();
-  void prepare_grids();
+  void prepare_grid();
   void track(const FrameSet& frame);
   Answer execute(const Command& command);
   std::string carry_out(const Command& command);
@@ -70,7 +71,6 @@ class Node {
   void publish_frames(const Tracked& tracked);
   void publish_corrected_odometry();
   void publish_map_if_due(const Tracked& tracked);
-  void publish_grid_if_due(const messages::Header& header, const std::shared_ptr<const Map>& map);
   void publish_events();
   void publish_state();
   void set_status(const std::string& status);
@@ -78,6 +78,7 @@ class Node {
   Config config_;
   Options options_;
   Publisher& publisher_;
+  run::Watcher* watcher_;
   Counts counts_;
   Pairing pairing_;
   input::Transforms static_transforms_;
@@ -94,10 +95,7 @@ class Node {
   bool is_paused_ = false;
   std::optional<double> map_told_s_;
   std::uint64_t map_version_told_ = 0;
-  std::optional<KeyframeDepths> depths_;  // where a grid is made
-  std::unique_ptr<GridThread> grids_;
-  std::optional<double> grid_told_s_;
-  std::uint64_t grid_version_told_ = 0;
+  std::optional<GridOutput> grid_;
 };
 
 }  // namespace samewhere::node

@@ -17,10 +17,11 @@ std::size_t images_of(const Config& config) {
 
 }  // namespace
 
-NodeThread::NodeThread(const Config& config, const Options& options, Publisher& publisher)
+NodeThread::NodeThread(const Config& config, const Options& options, Publisher& publisher,
+                       run::Watcher* watcher)
     : max_images_(images_of(config)),
       inbox_(kMaxWaiting + max_images_),
-      node_(config, options, publisher),
+      node_(config, options, publisher, watcher),
       worker_([this] {
         while (std::optional<Incoming> incoming = inbox_.receive()) {
           node_.count_dropped(num_dropped_.exchange(0));

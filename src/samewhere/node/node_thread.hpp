@@ -12,7 +12,9 @@ namespace samewhere::node {
 // that come faster than they are tracked are dropped, oldest first, and counted.
 class NodeThread {
  public:
-  NodeThread(const Config& config, const Options& options, Publisher& publisher);
+  // Arguments as in Node.
+  NodeThread(const Config& config, const Options& options, Publisher& publisher,
+             run::Watcher* watcher = nullptr);
   NodeThread(const NodeThread&) = delete;
   NodeThread& operator=(const NodeThread&) = delete;
   // What waits is not done.

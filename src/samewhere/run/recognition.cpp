@@ -59,8 +59,10 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps) {
   searching.join();
 }
 
-Recognition::Recognition(const pipeline::Config& config)
-    : config_(without_pose(config)), detector_(config_, pipeline::recognition_settings(config_)) {}
+Recognition::Recognition(const pipeline::Config& config, Watcher* watcher)
+    : config_(without_pose(config)),
+      detector_(config_, pipeline::recognition_settings(config_)),
+      watcher_(watcher) {}
 
 RecognitionSteps Recognition::steps() {
   return {.describe = [this](const core::Frame& frame) { return describe(frame); },
@@ -77,6 +79,7 @@ DescribedFrame Recognition::describe(const core::Frame& frame) {
   const core::ScopedTimer timer(describe_timings_, "features and thumbnail");
   described.view = features::extract(frame, config_.features);
   described.thumbnail = report::jpeg_bytes(frame.images[0], report::kThumbnailWidth_px);
+  if (watcher_ != nullptr) described.frame = frame;
   return described;
 }
 
@@ -88,20 +91,36 @@ SearchedFrame Recognition::search(DescribedFrame described) {
 }
 
 void Recognition::verify(const SearchedFrame& searched) {
-  const auto& [descriptor, view, thumbnail] = searched.described;
+  const DescribedFrame& described = searched.described;
   std::vector<core::Candidate> candidates;
+  core::Ledger rows;
   {
     const core::ScopedTimer timer(verify_timings_, "exact similarity");
-    candidates = retrieve::compare(descriptor, searched.found);
+    candidates = retrieve::compare(described.descriptor, searched.found);
   }
-  const core::ScopedTimer timer(verify_timings_, "verify");
-  found_.record.thumbnails[view.frame] = thumbnail;
-  keep(detector_.verify(descriptor, candidates, view, verify::WithoutMap()));
+  {
+    const core::ScopedTimer timer(verify_timings_, "verify");
+    found_.record.thumbnails[described.view.frame] = described.thumbnail;
+    rows = detector_.verify(described.descriptor, candidates, described.view, verify::WithoutMap());
+    keep(rows);
+  }
+  if (watcher_ != nullptr) tell_watcher(described, rows);
 }
 
-void Recognition::keep(const std::vector<core::LedgerRow>& rows) {
+void Recognition::keep(const core::Ledger& rows) {
   core::Ledger& ledger = found_.record.ledger;
   ledger.insert(ledger.end(), rows.begin(), rows.end());
+}
+
+void Recognition::tell_watcher(const DescribedFrame& described, const core::Ledger& rows) {
+  std::vector<scene::Thumbnail> thumbnails;
+  for (const core::LedgerRow& row : rows) {
+    for (const core::FrameId frame : {row.candidate.query, row.candidate.match})
+      if (told_pictures_.insert(frame).second)
+        thumbnails.push_back({frame, found_.record.thumbnails.at(frame)});
+  }
+  watcher_->see_thumbnails(thumbnails);
+  watcher_->see_judged_frame(described.frame, described.view, rows);
 }
 
 void Recognition::find_best_of_queries() {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct DescribedFrame {
   core::Descriptor descriptor;
   features::View view;
   std::string thumbnail;  // JPEG
+  core::Frame frame;      // for a watcher; without one empty
 };
 
 // And after the second.
@@ -45,7 +47,8 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps);
 class Recognition {
  public:
   // The window is resolved into frames. No loop needs a relative pose: verify.require_pose is off.
-  explicit Recognition(const pipeline::Config& config);
+  // `watcher`, if any, is told of each verified frame.
+  explicit Recognition(const pipeline::Config& config, Watcher* watcher = nullptr);
 
   // Point into this object.
   RecognitionSteps steps();
@@ -59,16 +62,20 @@ class Recognition {
   DescribedFrame describe(const core::Frame& frame);
   SearchedFrame search(DescribedFrame described);
   void verify(const SearchedFrame& searched);
-  void keep(const std::vector<core::LedgerRow>& rows);
+  void keep(const core::Ledger& rows);
+  void tell_watcher(const DescribedFrame& described, const core::Ledger& rows);
   void find_best_of_queries();
 
   pipeline::Config config_;
   pipeline::LoopDetector detector_;
+  Watcher* watcher_;
   // one for each step, since each may have its own thread
   core::Timings describe_timings_;
   core::Timings search_timings_;
   core::Timings verify_timings_;
-  RunOutcome found_;  // of verify()
+  // of verify()
+  RunOutcome found_;
+  std::set<core::FrameId> told_pictures_;
 };
 
 }  // namespace samewhere::run

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,13 +10,13 @@
 
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
-#include <samewhere/core/progress.hpp>
 #include <samewhere/input/newest.hpp>
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/report/figure.hpp>
 #include <samewhere/report/funnel.hpp>
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/run/candidate_matches.hpp>
+#include <samewhere/run/frame_feed.hpp>
 #include <samewhere/run/map_export.hpp>
 #include <samewhere/run/mapped_slam.hpp>
 #include <samewhere/run/open_source.hpp>
@@ -26,6 +25,7 @@
 #include <samewhere/run/recognition.hpp>
 #include <samewhere/run/run.hpp>
 #include <samewhere/run/run_metrics.hpp>
+#include <samewhere/run/run_notes.hpp>
 #include <samewhere/run/run_odometry.hpp>
 
 namespace samewhere::run {
@@ -46,87 +46,6 @@ RunOutcome start_outcome(const pipeline::Config& config, const core::SourceInfo&
   outcome.record.config_yaml = core::config_as_yaml(config);
   return outcome;
 }
-
-// The frames of a source until its end, an error or Ctrl-C, with a progress line on stderr. The
-// record of the outcome tells which.
-class FrameFeed {
- public:
-  // `source` and `outcome` outlive the feed.
-  FrameFeed(core::Source& source, RunOutcome& outcome, bool is_quiet)
-      : source_(source),
-        outcome_(outcome),
-        progress_("frames", source.info().num_frames, is_quiet) {}
-
-  std::optional<core::Frame> next() {
-    if (num_given_ > 0) progress_.update(num_given_ + num_dropped_, note_);
-    outcome_.record.is_interrupted = core::is_interrupted();
-    if (outcome_.record.is_interrupted) return std::nullopt;
-    try {
-      const core::ScopedTimer timer(timings_, report::kWaitForInputStage);
-      ++num_given_;
-      note_memory();
-      std::optional<core::Frame> frame = source_.next();
-      if (frame) num_dropped_ += frame->num_dropped_before;
-      // or while it was waited for
-      if (!frame) outcome_.record.is_interrupted = core::is_interrupted();
-      return frame;
-    } catch (const core::InputError& error) {
-      outcome_.record.input_error = error.what();
-    } catch (const core::Interrupted&) {
-      outcome_.record.is_interrupted = true;
-    }
-    return std::nullopt;
-  }
-
-  // What the progress line tells beside the frames.
-  void note(std::string text) { note_ = std::move(text); }
-
-  // When all frames were given: how long they took to come, and what was dropped meanwhile.
-  void report() const {
-    report::RunRecord& record = outcome_.record;
-    record.timings.add(timings_);
-    if (source_.info().is_live) {
-      record.figures.push_back(report::figure("frames dropped", "{}", num_dropped_));
-    }
-  }
-
- private:
-  // About 300 samples of ten minutes.
-  void note_memory() {
-    constexpr int kFrames = 50;
-    if (num_given_ % kFrames == 1)
-      outcome_.record.memory.push_back({num_given_ - 1, core::resident_memory_mib()});
-  }
-
-  core::Source& source_;
-  RunOutcome& outcome_;
-  core::Timings timings_;
-  core::Progress progress_;
-  std::string note_;
-  int num_given_ = 0;
-  int num_dropped_ = 0;
-};
-
-// The loops of a run that goes on.
-class LoopCount {
- public:
-  // Verdicts in the order in which they are told.
-  void add(const core::Ledger& rows) {
-    for (const core::LedgerRow& row : rows) {
-      if (row.candidate.origin == core::Origin::kRelocalization) continue;
-      if (core::is_loop(row.verdict))
-        accepted_.insert(row.candidate.id);
-      else
-        accepted_.erase(row.candidate.id);
-    }
-  }
-  std::string text() const {
-    return fmt::format("{} loop{}", accepted_.size(), accepted_.size() == 1 ? "" : "s");
-  }
-
- private:
-  std::set<core::CandidateId> accepted_;
-};
 
 // Read ahead in a thread of its own: one frame, or in real time the newest.
 std::unique_ptr<core::Source> read_ahead(std::unique_ptr<core::Source> source,
@@ -267,15 +186,6 @@ void report_coverage(const RunOdometry& odometry, report::RunRecord& record) {
   if (!record.input_error) record.input_error = odometry.error();
 }
 
-MapPlan watched(MapPlan plan, Watcher* watcher) {
-  if (watcher == nullptr) return plan;
-  plan.watch = [watcher, watch = plan.watch](const auto& map, const pipeline::MapNews& news) {
-    watcher->see_thumbnails(news.thumbnails);
-    if (watch) watch(map, news);
-  };
-  return plan;
-}
-
 // Frames whose match passes the geometric checks but neither sequence nor prior accepts it; none if
 // any loop was accepted.
 std::set<core::FrameId> unconfirmed_queries(const core::Ledger& ledger, core::Refusal check) {
@@ -318,20 +228,6 @@ void feed_frame(core::Frame& frame, std::optional<RunOdometry>& odometry, Mapped
   mapped.feed(frame);
 }
 
-// What is noted of each frame after it was fed.
-struct RunNotes {
-  std::vector<std::string> names;
-  LoopCount loops;
-
-  void add(const core::Frame& frame, const pipeline::Slam& slam, FrameFeed& feed,
-           Watcher* watcher) {
-    names.push_back(frame.name);
-    loops.add(slam.newest_rows());
-    feed.note(fmt::format("{}, {}", core::name_of(slam.frames().back().status), loops.text()));
-    if (watcher != nullptr) watcher->see_frame(frame, names, slam);
-  }
-};
-
 }  // namespace
 
 RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Config& given,
@@ -352,13 +248,14 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
                     watched(plan, watcher));
   if (odometry) mapped.follow(odometry->path());
   const pipeline::Slam& slam = mapped.slam();
-  RunNotes notes;
-  FrameFeed feed(*source, outcome, is_quiet);
+  RunNotes notes(watcher);
+  FrameFeed feed(*source, outcome.record, is_quiet);
   if (watcher != nullptr) watcher->begin(source->info(), config, !mapped.is_metric());
   while (std::optional<core::Frame> frame = feed.next()) {
     feed_frame(*frame, odometry, mapped, outcome.record.timings);
     note_first_pose(slam, outcome.record);
-    notes.add(*frame, slam, feed, watcher);
+    notes.add(*frame, slam);
+    feed.note(notes.text());
   }
 
   outcome.map_error = mapped.finish();
@@ -367,7 +264,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
 
   report::RunRecord& record = outcome.record;
   record.thumbnails = mapped.take_thumbnails();
-  record_slam(slam, notes.names, record);
+  record_slam(slam, notes.names(), record);
   record_for_page(mapped, config, record);
   if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
   record_figures(mapped, config, plan, truth, record);
@@ -377,19 +274,20 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
 }
 
 RunOutcome run_recognition(std::unique_ptr<core::Source> unbuffered, const pipeline::Config& given,
-                           std::function<void()> begin, bool is_quiet) {
+                           std::function<void()> begin, bool is_quiet, Watcher* watcher) {
   const auto source = read_ahead(std::move(unbuffered), given);
   const core::Truth truth = source->truth();
   const pipeline::Config config = with_window_in_frames(given, source->info());
   RunOutcome outcome = start_outcome(config, source->info());
-  Recognition recognition(config);
-  FrameFeed feed(*source, outcome, is_quiet);
+  Recognition recognition(config, watcher);
+  FrameFeed feed(*source, outcome.record, is_quiet);
   const auto run = config.threads ? run_in_threads : run_in_turn;
   const auto next = [&] {
     auto frame = feed.next();
     if (frame && begin) std::exchange(begin, {})();
     return frame;
   };
+  if (watcher != nullptr) watcher->begin_recognition(source->info(), config);
   run(next, recognition.steps());
   std::move(recognition).report_to(outcome);
   report::RunRecord& record = outcome.record;

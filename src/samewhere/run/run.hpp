@@ -35,8 +35,9 @@ RunOutcome run_slam(std::unique_ptr<core::Source> source, const pipeline::Config
 
 // Recognition alone: every frame is a query against all older ones. Needs neither depth nor camera.
 // `begin`, if any, is called once, when there is a first frame. is_quiet: without the progress
-// line.
+// line. `watcher`, if any, outlives the run.
 RunOutcome run_recognition(std::unique_ptr<core::Source> source, const pipeline::Config& config,
-                           std::function<void()> begin = {}, bool is_quiet = false);
+                           std::function<void()> begin = {}, bool is_quiet = false,
+                           Watcher* watcher = nullptr);
 
 }  // namespace samewhere::run

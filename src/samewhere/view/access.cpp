@@ -1,3 +1,4 @@
+#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,6 +46,16 @@ std::optional<std::string> Access::refusal(const Caller& caller) const {
   if (!token_.empty() && !is_same_secret(caller.token, token_))
     return "the token is missing or wrong; expected the address that samewhere printed";
   return std::nullopt;
+}
+
+std::string token_error(const std::string& token) {
+  constexpr std::size_t kMinToken = 8;
+  for (const char c : token) {
+    const bool is_plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+    if (!is_plain) return "expected letters, digits, '-', '_' and '.'";
+  }
+  return token.size() < kMinToken ? "expected at least 8 characters" : "";
 }
 
 bool is_same_secret(std::string_view given, std::string_view expected) {

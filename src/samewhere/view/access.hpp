@@ -35,6 +35,10 @@ class Access {
   std::string token_;
 };
 
+// Why this is no token that a user may choose: it stands in addresses without escapes. Empty: it is
+// one.
+std::string token_error(const std::string& token);
+
 // In a time that does not tell how much of them is equal.
 bool is_same_secret(std::string_view given, std::string_view expected);
 

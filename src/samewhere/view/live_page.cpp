@@ -20,7 +20,6 @@ namespace {
 
 constexpr std::size_t kMaxLivePoints = 60'000;
 constexpr std::size_t kMaxLiveCandidates = 20'000;
-constexpr std::size_t kMaxLivePictures_bytes = 32'000'000;
 constexpr int kImageWidth_px = 480;
 constexpr double kPointsPeriod_s = 1.5;
 constexpr double kCostShare = 0.05;  // of one processor, at most, for landmarks
@@ -63,11 +62,13 @@ std::string image_json(const LiveImage& image) {
 }  // namespace
 
 LivePage::LivePage(const core::SourceInfo& source, const pipeline::Config& config,
-                   bool is_scale_unknown, bool may_wait)
-    : start_({{"title", source.name},
+                   const LiveKind& kind)
+    : session_(kind.session),
+      start_({{"title", source.name},
               {"source", config.source},
-              {"is_scale_unknown", is_scale_unknown},
-              {"may_wait", may_wait},
+              {"is_recognition", kind.is_recognition},
+              {"is_scale_unknown", kind.is_scale_unknown},
+              {"may_wait", kind.may_wait},
               {"num_expected", source.num_frames},
               {"status_names", report::page_status_names()},
               {"limits", report::page_limits(run::score_limits(config.verify))},
@@ -144,8 +145,6 @@ void LivePage::add_candidates(const core::Ledger& rows) {
 
 void LivePage::add_pictures(const std::vector<scene::Thumbnail>& thumbnails) {
   for (const scene::Thumbnail& thumbnail : thumbnails) {
-    if (num_picture_bytes_ > kMaxLivePictures_bytes) return;
-    num_picture_bytes_ += thumbnail.jpeg.size();
     pictures_.push_back(report::json_for_script({{"frame", thumbnail.frame.index()},
                                                  {"session", thumbnail.frame.session()},
                                                  {"jpeg_base64", report::base64(thumbnail.jpeg)}}));
@@ -178,6 +177,7 @@ void LivePage::tell_status(const LiveNews& news) {
 }
 
 std::string LivePage::events_for(LiveCursor& cursor) const {
+  if (cursor.session != session_) cursor = {.session = session_};
   std::string text;
   if (!cursor.has_start) text += event("start", start_);
   if (!cursor.has_start && !frames_.empty()) {

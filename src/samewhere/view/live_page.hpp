@@ -25,11 +25,21 @@ struct LiveImage {
   std::vector<int> tracked;  // features that show a landmark
 };
 
+inline constexpr std::size_t kMaxLivePictures_bytes = 32'000'000;
+
+// What a page is told of its run before all else.
+struct LiveKind {
+  std::size_t session = 0;  // how many came before it
+  bool is_recognition = false;
+  bool is_scale_unknown = false;
+  bool may_wait = false;  // pages may let the run wait
+};
+
 // What a run has given since the pages were told. Its threads add to it and never wait for a page.
 struct LiveNews {
   std::size_t first = 0;  // frames from here on are replaced
   std::vector<core::FramePose> frames;
-  std::vector<std::string> names;  // of frames that were not named yet
+  std::vector<std::string> names;  // of frames that were not named yet, copied or not
   std::optional<scene::MapVersion> map;
   std::optional<LiveImage> image;
   core::Ledger rows;
@@ -40,6 +50,7 @@ struct LiveNews {
 
 // How far a page has been told.
 struct LiveCursor {
+  std::size_t session = 0;
   bool has_start = false;
   std::size_t generation = 0;  // how often all poses were replaced
   std::size_t num_frames = 0;
@@ -53,12 +64,10 @@ struct LiveCursor {
 // What the pages are told of a run, as JSON of page/README.md. Single-threaded.
 class LivePage {
  public:
-  // may_wait: pages may let the run wait.
-  LivePage(const core::SourceInfo& source, const pipeline::Config& config, bool is_scale_unknown,
-           bool may_wait);
+  LivePage(const core::SourceInfo& source, const pipeline::Config& config, const LiveKind& kind);
 
   void add(LiveNews news);
-  // Server-sent events with all that the cursor lacks.
+  // Server-sent events with all that the cursor lacks. One of an earlier session begins anew.
   std::string events_for(LiveCursor& cursor) const;
 
  private:
@@ -76,6 +85,7 @@ class LivePage {
   std::string frames_event(const std::vector<report::FrameRecord>& records, std::size_t from,
                            bool has_names) const;
 
+  std::size_t session_;
   Json start_;
   std::vector<core::FramePose> frames_;
   std::vector<std::string> names_;
@@ -88,7 +98,6 @@ class LivePage {
   core::Ledger ledger_;
   std::vector<std::string> candidates_;  // each verdict, in the order of its coming
   std::vector<std::string> pictures_;
-  std::size_t num_picture_bytes_ = 0;
   std::string points_;
   std::size_t points_version_ = 0;
   double points_due_s_ = 0.0;

@@ -55,32 +55,70 @@ Routes LiveView::routes() {
 
 void LiveView::begin(const core::SourceInfo& source, const pipeline::Config& config,
                      bool is_scale_unknown) {
-  may_wait_.set(!source.is_live && !config.input.realtime);
+  begin_session(source, config, {.is_scale_unknown = is_scale_unknown});
+}
+
+void LiveView::begin_recognition(const core::SourceInfo& source, const pipeline::Config& config) {
+  begin_session(source, config, {.is_recognition = true});
+}
+
+void LiveView::begin_session(const core::SourceInfo& source, const pipeline::Config& config,
+                             LiveKind kind) {
+  kind.session = num_sessions_++;
+  kind.may_wait = !source.is_live && !config.input.realtime;
+  may_wait_.set(kind.may_wait);
+  num_copied_ = 0;
+  copy_due_s_ = full_copy_due_s_ = 0.0;
   page_.with([&](auto& page) {
-    page.emplace(source, config, is_scale_unknown, may_wait_.get());
+    news_.with([this](LiveNews& news) {
+      news = {};
+      num_picture_bytes_ = 0;
+      return 0;
+    });
+    page.emplace(source, config, kind);
     return 0;
   });
 }
 
-void LiveView::note_rows(const core::Ledger& rows) {
-  if (rows.empty()) return;
+void LiveView::note(const std::string& name, const core::Ledger& rows) {
   news_.with([&](LiveNews& news) {
+    news.names.push_back(name);
     news.rows.insert(news.rows.end(), rows.begin(), rows.end());
     return 0;
   });
 }
 
-void LiveView::see_frame(const core::Frame& frame, const std::vector<std::string>& names,
-                         const pipeline::Slam& slam) {
-  note_rows(slam.newest_rows());
-  const bool is_paused = pace_.get().is_paused;
-  if (num_pages() > 0 && (is_paused || steady_s() >= copy_due_s_)) copy(frame, names, slam);
-  if (may_wait_.get()) pace_.wait(frame.stamp_s, [this] { return is_page_gone(); });
+bool LiveView::is_copy_due() const {
+  return num_pages() > 0 && (pace_.get().is_paused || steady_s() >= copy_due_s_);
+}
+
+void LiveView::wait(double stamp_s) {
+  if (may_wait_.get()) pace_.wait(stamp_s, [this] { return is_page_gone(); });
+}
+
+void LiveView::see_frame(const core::Frame& frame, const pipeline::Slam& slam) {
+  note(frame.name, slam.newest_rows());
+  if (is_copy_due()) copy(frame, slam);
+  wait(frame.stamp_s);
+}
+
+void LiveView::see_judged_frame(const core::Frame& frame, const features::View& view,
+                                const core::Ledger& rows) {
+  note(frame.name, rows);
+  if (is_copy_due()) {
+    news_.with([&](LiveNews& news) {
+      news.image = LiveImage{frame.id, frame.images.at(0), view.features, {}};
+      news.num_frames = frame.id.index() + 1;
+      news.phase = "recognition";
+      return 0;
+    });
+    copy_due_s_ = steady_s() + kCopyPeriod_s;
+  }
+  wait(frame.stamp_s);
 }
 
 // All poses now and then: relocalization, initialization and corrections change older ones.
-void LiveView::copy(const core::Frame& frame, const std::vector<std::string>& names,
-                    const pipeline::Slam& slam) {
+void LiveView::copy(const core::Frame& frame, const pipeline::Slam& slam) {
   const double begin_s = steady_s();
   const bool is_full = begin_s >= full_copy_due_s_;
   const auto& frames = slam.frames();
@@ -92,8 +130,6 @@ void LiveView::copy(const core::Frame& frame, const std::vector<std::string>& na
     }
     news.frames.insert(news.frames.end(), frames.begin() + static_cast<std::ptrdiff_t>(from),
                        frames.end());
-    news.names.insert(news.names.end(), names.begin() + static_cast<std::ptrdiff_t>(num_named_),
-                      names.end());
     if (is_full) news.map = slam.visible_map();
     news.image = LiveImage{frame.id, frame.images.at(0), slam.newest().features,
                            slam.newest().tracked_features};
@@ -102,7 +138,6 @@ void LiveView::copy(const core::Frame& frame, const std::vector<std::string>& na
     return 0;
   });
   num_copied_ = frames.size();
-  num_named_ = names.size();
   const double end_s = steady_s();
   copy_due_s_ = end_s + kCopyPeriod_s;
   if (is_full)
@@ -112,7 +147,11 @@ void LiveView::copy(const core::Frame& frame, const std::vector<std::string>& na
 void LiveView::see_thumbnails(const std::vector<scene::Thumbnail>& thumbnails) {
   if (thumbnails.empty()) return;
   news_.with([&](LiveNews& news) {
-    news.thumbnails.insert(news.thumbnails.end(), thumbnails.begin(), thumbnails.end());
+    for (const scene::Thumbnail& thumbnail : thumbnails) {
+      if (num_picture_bytes_ > kMaxLivePictures_bytes) break;
+      num_picture_bytes_ += thumbnail.jpeg.size();
+      news.thumbnails.push_back(thumbnail);
+    }
     return 0;
   });
 }

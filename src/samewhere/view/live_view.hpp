@@ -13,9 +13,9 @@
 
 namespace samewhere::view {
 
-// Shows a run in browsers while it goes on: a page that grows, and at the end the report. Costs the
-// run next to nothing while no page is open. A page may let a recording wait; when the last
-// page is closed, it goes on.
+// Shows a run in browsers while it goes on: SLAM, recognition, or the sessions of a node. A page that
+// grows, and where finish() is called the report at the end. Costs the run next to nothing while no
+// page is open. A page may let a recording wait; when the last page is closed, it goes on.
 class LiveView : public run::Watcher {
  public:
   // Serves at once. Throws InputError if the place cannot be served. A place that other
@@ -28,8 +28,10 @@ class LiveView : public run::Watcher {
 
   void begin(const core::SourceInfo& source, const pipeline::Config& config,
              bool is_scale_unknown) override;
-  void see_frame(const core::Frame& frame, const std::vector<std::string>& names,
-                 const pipeline::Slam& slam) override;
+  void see_frame(const core::Frame& frame, const pipeline::Slam& slam) override;
+  void begin_recognition(const core::SourceInfo& source, const pipeline::Config& config) override;
+  void see_judged_frame(const core::Frame& frame, const features::View& view,
+                        const core::Ledger& rows) override;
   void see_thumbnails(const std::vector<scene::Thumbnail>& thumbnails) override;
 
   // The run has ended: pages show its report.
@@ -42,21 +44,23 @@ class LiveView : public run::Watcher {
   NextEvents open_stream();
   std::string next_events(LiveCursor& cursor);
   Answer control(const std::string& body);
-  void note_rows(const core::Ledger& rows);
-  void copy(const core::Frame& frame, const std::vector<std::string>& names,
-            const pipeline::Slam& slam);
+  void begin_session(const core::SourceInfo& source, const pipeline::Config& config, LiveKind kind);
+  void note(const std::string& name, const core::Ledger& rows);
+  bool is_copy_due() const;
+  void copy(const core::Frame& frame, const pipeline::Slam& slam);
+  void wait(double stamp_s);
   bool is_page_gone();
 
   core::Guarded<LiveNews> news_;
+  std::size_t num_picture_bytes_ = 0;  // of the session; under the lock of news_
   core::Guarded<std::optional<LivePage>> page_;
   Page live_html_;
   core::Guarded<Page> report_;    // once the run has ended
   core::Guarded<bool> may_wait_;  // a recording, as fast as it is asked for
   Pace pace_;
   // of the run's thread
+  std::size_t num_sessions_ = 0;
   std::size_t num_copied_ = 0;
-  std::size_t num_named_ = 0;
-  std::uint64_t map_number_ = 0;
   double copy_due_s_ = 0.0;
   double full_copy_due_s_ = 0.0;
   double last_page_s_ = 0.0;

@@ -61,7 +61,7 @@ std::string host_of(const Place& place) {
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw core::InputError("the system gives no random numbers for a token; expected --view-token");
+    throw core::InputError("the system gives no random numbers for a token; expected --token");
   std::string text;
   for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
   return text;

@@ -128,7 +128,7 @@ class Server::Http : private httplib::Server {
     if (is_bound) return place;
     throw core::InputError(
         host_of(place) +
-        ": cannot be served: it is taken, or not of this machine; expected another --view=PORT");
+        ": cannot be served: it is taken, or not of this machine; expected another port");
   }
 
   // In the accepting thread.
