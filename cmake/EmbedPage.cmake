@@ -1,13 +1,14 @@
 # Run by `cmake -P`: puts the files of a page into one HTML template, and that into a C++ file that can be compiled.
 #
-#   PAGE       the page: a line `<!-- include NAME -->` stands for the content of the file NAME
+#   PAGE       the page: a line `<!-- include NAME -->` stands for the content of the file NAME, which may include others
 #   FILES      the files that may be included, separated by |
 #   TEMPLATE   HTML file to write, to look at
 #   SOURCE     C++ file to write
 #   FUNCTION   the function that it defines, in samewhere::report, with the page as its value
 string(REPLACE "|" ";" FILES "${FILES}")
 file(READ ${PAGE} page)
-foreach(path IN LISTS FILES)
+# twice: what is included may include others
+foreach(path IN LISTS FILES FILES)
   get_filename_component(name ${path} NAME)
   file(READ ${path} content)
   string(REPLACE "<!-- include ${name} -->" "${content}" page "${page}")

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSameFrames = 10;
+constexpr int kSameFrames = 10;  // apart at most, of views that count as the same
 
 // The text of a data block: the last of its name, as the scripts before it may mention it.
 std::string block_of(std::string_view html, std::string_view id, const std::string& origin) {
@@ -161,7 +161,8 @@ std::string compare_html(const std::vector<ComparedRun>& runs) {
   }
   return filled(compare_template(), {{"{{title}}", escaped(title)},
                                      {"{{runs}}", json + "]"},
-                                     {"{{judged}}", json_for_script(judged_json(runs))}});
+                                     {"{{judged}}", json_for_script(judged_json(runs))},
+                                     {"{{same_frames}}", fmt::format("{}", kSameFrames)}});
 }
 
 }  // namespace samewhere::report

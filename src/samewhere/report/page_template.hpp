@@ -9,8 +9,8 @@ namespace samewhere::report {
 // `{{durations}}` are, in this order, for what html.cpp puts there.
 std::string_view page_template();
 
-// The same of the page that compares runs, with `{{title}}`, `{{runs}}` and `{{judged}}`
-// (compare.cpp).
+// The same of the page that compares runs, with `{{title}}`, `{{runs}}`, `{{judged}}` and
+// `{{same_frames}}` (compare.cpp).
 std::string_view compare_template();
 
 }  // namespace samewhere::report

@@ -3,7 +3,6 @@
 (function () {
   const { element, byId, number } = samewhere;
   const kShownFirst = ['accepted', 'false', 'withdrawn'];
-  const kSameFrames = 10; // as in compare.cpp
   const numFalse = (run) => run.candidates.filter((candidate) => candidate.kind === 'false').length;
 
   // Runs of one source begin at one pose: they are shown in the axes of the run with the least error, and with the
@@ -72,9 +71,10 @@
     nearest(candidate) {
       let best = null;
       let least = Infinity;
+      const sameFrames = JSON.parse(byId('same-frames').textContent);
       for (const other of this.run.candidates) {
         const apart = [Math.abs(other.query - candidate.query), Math.abs(other.match - candidate.match)];
-        if (Math.max(...apart) > kSameFrames || apart[0] + apart[1] >= least) continue;
+        if (Math.max(...apart) > sameFrames || apart[0] + apart[1] >= least) continue;
         best = other;
         least = apart[0] + apart[1];
       }

@@ -1,109 +1,14 @@
 // The map in 3D: landmarks, paths, loop candidates, the camera at the time shown.
 (function () {
-  const element = samewhere.element;
-  const kClickPixels = 10; // a click so near to a line is meant for it
+  const { sprite, wideLines, continuedRows, segments, thinLines } = samewhere.drawing;
   const kMaxSlowPoints = 60000; // landmarks drawn where there is no graphics card
 
-  const sprites = new Map(); // made once, for any number of updates
-  function sprite(...look) {
-    const key = look.join();
-    if (!sprites.has(key)) sprites.set(key, makeSprite(...look));
-    return sprites.get(key);
-  }
-  function makeSprite(mark, colour, ground) {
-    const canvas = element('canvas', { width: 64, height: 64 });
-    const pen = canvas.getContext('2d');
-    pen.beginPath();
-    if (mark === 'dot') pen.arc(32, 32, 26, 0, 7);
-    if (mark === 'circle') pen.arc(32, 32, 20, 0, 7);
-    if (mark === 'diamond') { pen.moveTo(32, 6); pen.lineTo(56, 32); pen.lineTo(32, 58); pen.lineTo(8, 32); }
-    if (mark === 'cross') { pen.moveTo(12, 12); pen.lineTo(52, 52); pen.moveTo(52, 12); pen.lineTo(12, 52); }
-    if (mark === 'triangle') { pen.moveTo(32, 8); pen.lineTo(58, 54); pen.lineTo(6, 54); }
-    if (mark !== 'cross') pen.closePath();
-    pen.fillStyle = ground;
-    pen.fill();
-    pen.lineWidth = mark === 'cross' ? 16 : 10;
-    pen.strokeStyle = colour;
-    pen.stroke();
-    return new THREE.CanvasTexture(canvas);
-  }
-
-  // Lines of a width in pixels.
-  function wideLines(positions, options) {
-    const geometry = new THREE.LineSegmentsGeometry();
-    geometry.setPositions(positions);
-    const material = new THREE.LineMaterial({ color: options.colour, linewidth: options.width, dashed: Boolean(options.dash), depthTest: options.depthTest !== false });
-    if (options.dash) {
-      material.defines.USE_DASH = '';
-      [material.dashSize, material.gapSize] = options.dash;
-    }
-    if (options.clip) Object.assign(material, { clipping: true, clippingPlanes: options.clip });
-    material.transparent = true;
-    material.uniforms.opacity.value = options.opacity || 1; // the renderer does not pass it on
-    const lines = new THREE.LineSegments2(geometry, material);
-    if (options.dash) lines.computeLineDistances();
-    lines.frustumCulled = false;
-    lines.renderOrder = options.order || 1;
-    return lines;
-  }
-
-  // Rows of a path that continue the row before: both have a position, and no `isBreak(row)`.
-  function continuedRows(positions, num, isBreak = () => false) {
-    const rows = [];
-    for (let row = 1; row < num; ++row) {
-      if (!Number.isNaN(positions[3 * row]) && !Number.isNaN(positions[3 * row - 3]) && !isBreak(row)) rows.push(row);
-    }
-    return rows;
-  }
-  function segments(positions, rows) {
-    const values = new Float32Array(6 * rows.length);
-    rows.forEach((row, i) => values.set(positions.subarray(3 * row - 3, 3 * row + 3), 6 * i));
-    return values;
-  }
-
-  // Lines of one pixel, which any machine draws fast.
-  function thinLines(values, options) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(values), 3));
-    const common = { color: options.colour, transparent: true, opacity: options.opacity || 1, depthWrite: false, clippingPlanes: options.clip || null };
-    const material = options.dash ? new THREE.LineDashedMaterial({ ...common, dashSize: options.dash[0], gapSize: options.dash[1] }) : new THREE.LineBasicMaterial(common);
-    const lines = new THREE.LineSegments(geometry, material);
-    if (options.dash) lines.computeLineDistances();
-    lines.renderOrder = options.order || 2;
-    return lines;
-  }
-
-  // Bounds of what is looked at: the path, and most landmarks near it.
-  samewhere.roomOf = function (run) {
-    const ofPath = run.bounds();
-    const pathLength = Math.hypot(...ofPath.map(([low, high]) => high - low));
-    const { positions } = run.points;
-    return ofPath.map(([low, high], axis) => {
-      const values = positions.filter((_, i) => i % 3 === axis).sort();
-      if (!values.length) return [low, high];
-      const at = (share) => values[Math.floor(share * (values.length - 1))];
-      return [Math.min(low, Math.max(at(0.04), low - 2 * pathLength)), Math.max(high, Math.min(at(0.96), high + 2 * pathLength))];
-    });
-  };
-
-  class Scene {
+  class Scene extends samewhere.Viewpoint {
     // room: bounds of what is looked at, [lowest, highest] per axis, if they are not those of the run alone.
     constructor(run, state, canvas, { isSlow, room }) {
+      super(canvas, isSlow);
       this.run = run;
       this.state = state;
-      this.canvas = canvas;
-      this.isSlow = isSlow;
-      this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSlow, preserveDrawingBuffer: true });
-      this.renderer.localClippingEnabled = true;
-      this.scene = new THREE.Scene();
-      this.camera = new THREE.PerspectiveCamera(42, 1, 0.05, 5000);
-      this.camera.up.set(0, 0, 1);
-      this.controls = new THREE.OrbitControls(this.camera, canvas);
-      this.controls.enableKeys = false;
-      this.controls.screenSpacePanning = true;
-      this.controls.maxPolarAngle = Math.PI * 0.98;
-      this.controls.addEventListener('change', () => this.render());
-      this.controls.addEventListener('start', () => { this.isMoved = true; });
       this.clip = [new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Plane(new THREE.Vector3(0, 0, -1), 0)];
       this.pictureTexture = null;
       this.shown = [];
@@ -111,6 +16,7 @@
       this.build();
       this.cut(state.get('heights'));
       this.watch();
+      this.pickOnClick((candidate) => state.set('selected', candidate));
       this.resize();
       this.look('whole', false);
       new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -126,13 +32,6 @@
       this.state.onChange('heights', (heights) => this.cut(heights));
       this.state.onChange('layers', () => this.showLayers());
       this.state.onChange('changed', (changed) => this.grow(changed));
-      this.pickOnClick();
-    }
-
-    useRoom(bounds) {
-      this.centre = new THREE.Vector3(...bounds.map(([low, high]) => (low + high) / 2));
-      this.radius = Math.max(0.5, Math.hypot(...bounds.map(([low, high]) => (high - low) / 2)));
-      this.frustumLength = Math.min(0.9, Math.max(0.12, this.radius / 16));
     }
 
     replace(name, object) {
@@ -375,187 +274,7 @@
       this.clip[1].constant = heights[1];
       this.render();
     }
-
-    // Views: the whole map from the side, or from above.
-    look(name, isMoving = true) {
-      this.isMoved = name !== 'whole';
-      const elevation = name === 'above' ? Math.PI / 2 - 1e-4 : 0.9;
-      const azimuth = name === 'above' ? -Math.PI / 2 : -Math.PI / 2 - 0.3;
-      const towards = new THREE.Vector3(Math.cos(azimuth) * Math.cos(elevation), Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation));
-      const distance = this.linked ? Math.max(...this.linked.map((scene) => scene.distanceThatFits(towards))) : this.distanceThatFits(towards);
-      this.moveCamera(this.centre.clone().add(towards.multiplyScalar(distance)), this.centre.clone(), isMoving);
-    }
-
-    // The distance from the centre at which the path and nearly all landmarks are in the picture.
-    distanceThatFits(towards) {
-      const right = new THREE.Vector3(0, 0, 1).cross(towards).normalize();
-      const up = towards.clone().cross(right);
-      const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
-      const need = (positions, share) => {
-        const distances = [];
-        const step = 3 * Math.ceil(positions.length / 60000);
-        for (let i = 0; i < positions.length; i += step) {
-          if (Number.isNaN(positions[i])) continue;
-          const v = new THREE.Vector3(positions[i], positions[i + 1], positions[i + 2]).sub(this.centre);
-          distances.push(v.dot(towards) + Math.max(Math.abs(v.dot(right)) / (tangent * this.camera.aspect), Math.abs(v.dot(up)) / tangent));
-        }
-        distances.sort((a, b) => a - b);
-        return distances.length ? distances[Math.floor(share * (distances.length - 1))] : 0;
-      };
-      const ofPath = need(this.run.positions, 1);
-      return 1.1 * Math.max(ofPath, Math.min(need(this.run.points.positions, 0.96), 2.5 * ofPath), 0.5);
-    }
-
-    moveTarget(target) {
-      const offset = this.camera.position.clone().sub(this.controls.target);
-      this.controls.target.copy(target);
-      this.camera.position.copy(target).add(offset);
-      this.controls.update();
-    }
-
-    moveCamera(position, target, isMoving) {
-      const still = matchMedia('(prefers-reduced-motion: reduce)').matches || !isMoving;
-      const from = [this.camera.position.clone(), this.controls.target.clone()];
-      const begin = performance.now();
-      const step = () => {
-        const share = still ? 1 : Math.min(1, (performance.now() - begin) / 350);
-        const eased = share * share * (3 - 2 * share);
-        this.camera.position.lerpVectors(from[0], position, eased);
-        this.controls.target.lerpVectors(from[1], target, eased);
-        this.controls.update();
-        this.render();
-        if (share < 1) requestAnimationFrame(step);
-      };
-      step();
-    }
-
-    // Scenes of one view: the camera of each moves with the others.
-    static link(scenes) {
-      for (const scene of scenes) {
-        scene.linked = scenes;
-        scene.controls.addEventListener('change', () => {
-          for (const other of scenes) {
-            if (other === scene) continue;
-            other.camera.position.copy(scene.camera.position);
-            other.camera.quaternion.copy(scene.camera.quaternion);
-            other.controls.target.copy(scene.controls.target);
-            other.render();
-          }
-        });
-      }
-    }
-
-    zoom(factor) {
-      const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(factor);
-      this.camera.position.copy(this.controls.target).add(offset);
-      this.controls.update();
-    }
-
-    size(lines) {
-      if (lines && lines.material.resolution) lines.material.resolution.set(this.canvas.clientWidth || 1, this.canvas.clientHeight || 1);
-    }
-
-    resize() {
-      const { clientWidth, clientHeight } = this.canvas.parentElement;
-      if (!clientWidth || !clientHeight) return;
-      this.renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
-      this.renderer.setSize(clientWidth, clientHeight, false);
-      this.camera.aspect = clientWidth / clientHeight;
-      this.camera.updateProjectionMatrix();
-      this.scene.traverse((object) => { if (object instanceof THREE.LineSegments2) this.size(object); });
-      this.render();
-    }
-
-    render() {
-      if (this.isDue) return;
-      this.isDue = true;
-      requestAnimationFrame(() => { this.isDue = false; this.renderNow(); });
-    }
-    renderNow() { this.renderer.render(this.scene, this.camera); }
-
-    // Where a point of the map is on the canvas, in CSS pixels; null: behind the camera.
-    onCanvas(point) {
-      const v = new THREE.Vector3(...point).project(this.camera);
-      return v.z > 1 ? null : [((v.x + 1) / 2) * this.canvas.clientWidth, ((1 - v.y) / 2) * this.canvas.clientHeight];
-    }
-
-    // The visible candidate whose line passes nearest to a pixel.
-    candidateAt(x, y) {
-      return samewhere.nearestLine(this.shown, (point) => this.onCanvas(point), x, y, kClickPixels);
-    }
-
-    pickOnClick() {
-      samewhere.onClickWithoutDrag(this.canvas, (x, y) => {
-        const candidate = this.candidateAt(x, y);
-        if (candidate) this.state.set('selected', candidate);
-      });
-      this.canvas.addEventListener('mousemove', (event) => {
-        if (event.buttons) return;
-        const box = this.canvas.getBoundingClientRect();
-        this.canvas.style.cursor = this.candidateAt(event.clientX - box.left, event.clientY - box.top) ? 'pointer' : 'grab';
-      });
-    }
   }
 
-  // Of lines to choose from, the one with least distance to (x, y) under a limit; accepted loops win ties.
-  samewhere.nearestLine = function (candidates, onCanvas, x, y, limit) {
-    const order = { false: 0, accepted: 0, withdrawn: 1, ambiguous: 2, rejected: 3 };
-    let best = null;
-    let bestCost = limit;
-    for (const candidate of candidates) {
-      const a = onCanvas(candidate.ends[0]);
-      const b = onCanvas(candidate.ends[1]);
-      if (!a || !b) continue;
-      const length2 = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2;
-      const share = length2 ? Math.min(1, Math.max(0, ((x - a[0]) * (b[0] - a[0]) + (y - a[1]) * (b[1] - a[1])) / length2)) : 0;
-      const cost = Math.hypot(a[0] + share * (b[0] - a[0]) - x, a[1] + share * (b[1] - a[1]) - y) + order[candidate.kind] - 3;
-      if (cost < bestCost) { best = candidate; bestCost = cost; }
-    }
-    return best;
-  };
-
-  samewhere.onClickWithoutDrag = function (canvas, click) {
-    let begin = null;
-    canvas.addEventListener('pointerdown', (event) => { begin = [event.clientX, event.clientY]; });
-    canvas.addEventListener('pointerup', (event) => {
-      if (!begin || Math.hypot(event.clientX - begin[0], event.clientY - begin[1]) > 4 || event.button !== 0) return;
-      const box = canvas.getBoundingClientRect();
-      click(event.clientX - box.left, event.clientY - box.top);
-    });
-  };
-
-  // Pairs of half axes of the 95 % ellipsoid of a covariance (xx, xy, xz, yy, yz, zz, of the world).
-  samewhere.ellipseAxes = function (m, axes) {
-    const kChi = Math.sqrt(7.815); // 95 % of chi-square with 3 degrees of freedom
-    const { values, vectors } = samewhere.eigen([[m[0], m[1], m[2]], [m[1], m[3], m[4]], [m[2], m[4], m[5]]]);
-    const half = values.map((value, i) => axes.direction(vectors.map((row) => row[i])).map((v) => v * kChi * Math.sqrt(Math.max(0, value))));
-    return [[half[0], half[1]], [half[1], half[2]], [half[0], half[2]]];
-  };
-  // Of a symmetric 3 x 3 matrix, by Jacobi rotations; vectors are the columns.
-  samewhere.eigen = function (matrix) {
-    const a = matrix.map((row) => [...row]);
-    const v = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-    for (let sweep = 0; sweep < 20; ++sweep) {
-      for (const [p, q] of [[0, 1], [0, 2], [1, 2]]) {
-        if (Math.abs(a[p][q]) < 1e-300) continue;
-        const theta = 0.5 * Math.atan2(2 * a[p][q], a[q][q] - a[p][p]);
-        const c = Math.cos(theta);
-        const s = Math.sin(theta);
-        for (let k = 0; k < 3; ++k) [a[k][p], a[k][q]] = [c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]];
-        for (let k = 0; k < 3; ++k) [a[p][k], a[q][k]] = [c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]];
-        for (let k = 0; k < 3; ++k) [v[k][p], v[k][q]] = [c * v[k][p] - s * v[k][q], s * v[k][p] + c * v[k][q]];
-      }
-    }
-    return { values: [a[0][0], a[1][1], a[2][2]], vectors: v };
-  };
-
-  // null: there is no WebGL. Else whether the processor draws, which takes long.
-  samewhere.probeWebGL = function () {
-    const context = document.createElement('canvas').getContext('webgl');
-    if (!context) return null;
-    const names = context.getExtension('WEBGL_debug_renderer_info');
-    const renderer = names ? context.getParameter(names.UNMASKED_RENDERER_WEBGL) : '';
-    return { isSlow: /swiftshader|llvmpipe|softpipe|software/i.test(renderer) };
-  };
   samewhere.Scene = Scene;
 })();
