@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """live_test.py PROGRAM: the live viewer in headless Chromium.
 
-Follows a short run from its first frame to its report, pauses it, and compares its results with those of the same run without a
-viewer; then overrides a verdict on the page of the finished run. Exit status 77 (skipped) without Chromium or Selenium.
+Follows short runs of `samewhere run` and `samewhere loops` from their first frames to their reports, pauses them, and compares their
+results with those of the same runs without a viewer; then overrides a verdict on the page of the finished run. Exit status 77
+(skipped) without Chromium or Selenium.
 
   live_test.py PROGRAM --pictures FOLDER   keeps screenshots
 """
@@ -22,7 +23,9 @@ import page_test
 SOURCE = "twin:twin-corridors?seed=22&speed=2"
 # short, and with accepted loops between views near to each other
 SETTINGS = ["twin.num_frames=120", "retrieve.window_frames=10", "map.min_shared=1000", "verify.min_look_alike_distance_m=0.3"]
-SAME_FILES = ["trajectory.tum", "odometry.tum", "loops.json", "frames.csv", "map.ply"]
+SAME_FILES = {"run": ["trajectory.tum", "odometry.tum", "loops.json", "frames.csv", "map.ply"],
+              "loops": ["loops.json", "matches.txt", "accepted.txt"]}
+NUM_UPDATES = 30
 
 
 class LivePage(page_test.Page):
@@ -40,9 +43,9 @@ class LivePage(page_test.Page):
         return self.run("return typeof samewhere !== 'undefined' && samewhere.run ? samewhere.run.num : 0")
 
 
-def command_of(program, out, *more):
+def command_of(program, command, out, *more):
     sets = [word for setting in SETTINGS for word in ("--set", setting)]
-    return [program, "run", SOURCE, "--out", str(out), "--quiet", *sets, *more]
+    return [program, command, SOURCE, "--out", str(out), "--quiet", *sets, *more]
 
 
 def url_of(process):
@@ -84,10 +87,25 @@ def check_live(page, pictures):
     page.by_id("view-follow").click()
     page.check("the view follows the camera", page.run("return samewhere.state.get('isFollowing')"))
     check_pause(page, pictures)
-    numbers = page.run("return [samewhere.map.renderer.info.memory.geometries, samewhere.map.renderer.info.memory.textures]")
-    page.wait("return samewhere.run.num > 85", 60)
-    later = page.run("return [samewhere.map.renderer.info.memory.geometries, samewhere.map.renderer.info.memory.textures]")
-    page.check("updates leave no buffers behind", all(b - a <= 8 for a, b in zip(numbers, later)), f"{numbers}, {later}")
+    page.wait("return samewhere.run.candidates.some((candidate) => candidate.kind === 'accepted')", 60)
+    check_buffers(page)
+
+
+# What the graphics card holds after an update of all parts, and after many more.
+def check_buffers(page):
+    count = f"""
+        const update = (num) => {{
+          for (let i = 0; i < num; ++i) {{
+            samewhere.state.set('changed', {{ all: true, points: true, frames: true, candidates: true }});
+            samewhere.map.renderNow();
+          }}
+          const {{ geometries, textures }} = samewhere.map.renderer.info.memory;
+          return [geometries, textures, samewhere.map.renderer.info.programs.length];
+        }};
+        return [update(2), update({NUM_UPDATES})];"""
+    before, after = page.run(count)
+    page.check("the scene has buffers", before[0] > 5, before)
+    page.check("updates leave no buffers behind", before == after, f"{before}, {after}")
 
 
 def check_end(page, folder, pictures):
@@ -99,6 +117,56 @@ def check_end(page, folder, pictures):
     page.check("its scene is drawn", page.run(page_test.COUNT_PIXELS) > 0.01)
     if pictures:
         page.picture(pictures / "live-end.png")
+
+
+def num_told(page):
+    text = page.by_id("live-text").text
+    return int(re.sub(r"[^0-9].*", "", text.removeprefix("Frame ").replace("\u202f", ""))) if text.startswith("Frame ") else 0
+
+
+def check_recognition(page, pictures):
+    page.check("recognition has candidates while it goes on", page.wait("return typeof samewhere !== 'undefined' && samewhere.run && samewhere.run.candidates.length > 20", 60))
+    page.by_id("live-pause").click()
+    page.check("it can be paused", page.wait("return document.documentElement.dataset.paused === 'true'"))
+    time.sleep(1.5)
+    before = num_told(page)
+    time.sleep(1.5)
+    page.check("a pause stops it", 0 < before == num_told(page), before)
+    page.check("it has no map and no time", not page.by_id("scene").is_displayed() and not page.by_id("time").is_displayed())
+    page.check("it shows the current image", page.by_id("view-features").is_displayed() and page.wait(f"return document.getElementById('view-features').dataset.frame === '{before - 1}'"), before)
+    page.check("its caption counts the features", re.fullmatch(r"frame \d+ · [\d\u202f]+ features", page.by_id("view-caption").text) is not None, page.by_id("view-caption").text)
+    page.run("samewhere.state.set('selected', samewhere.run.candidates[0])")
+    page.check("a candidate has the pictures of both views", page.run("const c = samewhere.run.candidates[0]; return Boolean(c.queryPicture && c.matchPicture)"))
+    if pictures:
+        page.picture(pictures / "live-loops.png")
+    page.by_id("live-step").click()
+    page.check("a step processes one frame", page.wait(f"return document.getElementById('live-text').textContent.startsWith('Frame {before + 1} ')"), num_told(page))
+    page.by_id("live-pause").click()
+
+
+def check_loops(program, driver, scratch, pictures):
+    folder = scratch / "seen-loops"
+    driver.get_log("browser")  # of pages whose server was ended
+    process = subprocess.Popen(command_of(program, "loops", folder, "--view"), stderr=subprocess.PIPE, text=True)
+    try:
+        url = url_of(process)
+        page = LivePage(driver, url)
+        check_recognition(page, pictures)
+        page.check("at the end it is a report", page.wait("return document.documentElement.dataset.mode === 'finished' && typeof samewhere !== 'undefined' && samewhere.run", 120))
+        page.check("with the candidates of loops.json", page.shown() == len(json.loads((folder / "loops.json").read_text())["candidates"]), page.shown())
+        check_quiet(page, url)
+        driver.get("about:blank")
+        page.check("without a page the program ends", process.wait(timeout=30) == 0)
+        check_same(page, program, "loops", folder, scratch / "unseen-loops")
+        return page.num_failed
+    finally:
+        process.kill()
+
+
+def check_same(page, program, command, folder, other):
+    subprocess.run(command_of(program, command, other), check=True, stdout=subprocess.DEVNULL)
+    for name in SAME_FILES[command]:
+        page.check(f"{name} of `{command}` is the same without a viewer", (folder / name).read_bytes() == (other / name).read_bytes())
 
 
 def check_override(program, folder, driver, pictures):
@@ -149,7 +217,7 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
         folder = pathlib.Path(scratch) / "seen"
         driver = page_test.browser(1400, 900, False, True, f"{scratch}/profile")
-        process = subprocess.Popen(command_of(options.program, folder, "--view"), stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command_of(options.program, "run", folder, "--view"), stderr=subprocess.PIPE, text=True)
         try:
             url = url_of(process)
             page = LivePage(driver, url)
@@ -158,11 +226,9 @@ def main():
             check_quiet(page, url)
             driver.get("about:blank")
             page.check("without a page the program ends", process.wait(timeout=30) == 0)
-            other = pathlib.Path(scratch) / "unseen"
-            subprocess.run(command_of(options.program, other), check=True, stdout=subprocess.DEVNULL)
-            for name in SAME_FILES:
-                page.check(f"{name} is the same without a viewer", (folder / name).read_bytes() == (other / name).read_bytes())
+            check_same(page, options.program, "run", folder, pathlib.Path(scratch) / "unseen")
             num_failed = page.num_failed + check_override(options.program, folder, driver, options.pictures)
+            num_failed += check_loops(options.program, driver, pathlib.Path(scratch), options.pictures)
         finally:
             process.kill()
             driver.quit()

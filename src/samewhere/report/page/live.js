@@ -52,6 +52,8 @@
       this.candidateOf = new Map();
       byId('title').textContent = start.title;
       byId('live-pace').hidden = !start.may_wait;
+      if (samewhere.state) samewhere.state.set('selected', null); // another session of a node
+      if (start.is_recognition) this.change('all');
     }
     frames(event) {
       const { frames } = this.data;
@@ -90,7 +92,8 @@
       this.data.num_candidates = Math.max(status.num_candidates, this.data.candidates.length);
       this.data.checks = status.checks;
       const of = this.data.num_expected ? ` of ${number(this.data.num_expected)}` : '';
-      byId('live-text').textContent = `Frame ${number(status.num_frames)}${of} · ${status.phase} · ${number(status.num_keyframes)} keyframes · ${number(status.num_landmarks)} landmarks${this.rate(status.num_frames)}`;
+      const made = this.data.is_recognition ? `${number(status.num_candidates)} candidates` : `${number(status.num_keyframes)} keyframes · ${number(status.num_landmarks)} landmarks`;
+      byId('live-text').textContent = `Frame ${number(status.num_frames)}${of} · ${status.phase} · ${made}${this.rate(status.num_frames)}`;
       byId('live-progress').value = this.data.num_expected ? status.num_frames / this.data.num_expected : 0;
       byId('live-progress').hidden = !this.data.num_expected;
     }
@@ -125,7 +128,7 @@
     update() {
       this.isDue = false;
       const { changed, data } = this;
-      if (!data.frames.num) return;
+      if (!data.frames.num && !data.is_recognition) return;
       const begin = performance.now();
       this.changed = {};
       const run = new samewhere.Run(data, this.pictureList, { frames_ms: new Float32Array(0), stages: [] });
@@ -135,6 +138,7 @@
     }
     begin(run) {
       this.show(run);
+      if (run.is_recognition) byId('side').before(byId('view')); // there is no map that it lies in
       samewhere.state.onChange('row', () => this.drawImage());
       this.drawImage();
     }
@@ -142,8 +146,9 @@
       const { state } = samewhere;
       const wasAtEnd = this.isAtEnd();
       Object.assign(samewhere.run, run);
+      if (state.get('row') >= run.num) state.set('row', Math.max(0, run.num - 1));
       state.set('changed', changed);
-      if (wasAtEnd) state.set('row', run.num - 1);
+      if (wasAtEnd) state.set('row', Math.max(0, run.num - 1));
     }
     isAtEnd() { return samewhere.run && samewhere.state.get('row') >= samewhere.run.num - 1; }
 
@@ -177,7 +182,8 @@
       draw(true, samewhere.css('inlier-match'), 2.5);
       const numTracked = areTracked.reduce((sum, value) => sum + value, 0);
       Object.assign(canvas.dataset, { frame, tracked: numTracked });
-      this.caption = `frame ${frame} · ${number(numTracked)} of ${number(areTracked.length)} features tracked`;
+      const features = `${number(areTracked.length)} features`;
+      this.caption = `frame ${frame} · ${this.data.is_recognition ? features : `${number(numTracked)} of ${features} tracked`}`;
       if (this.isAtEnd()) this.showCaption();
     }
     showCaption() {
