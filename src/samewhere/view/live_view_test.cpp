@@ -9,12 +9,13 @@
 #include <samewhere/core/stage_thread.hpp>
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/report/frames.hpp>
+#include <samewhere/report/funnel.hpp>
 #include <samewhere/report/loops.hpp>
 #include <samewhere/report/pairs.hpp>
 #include <samewhere/run/open_source.hpp>
 #include <samewhere/run/run.hpp>
 #include <samewhere/view/live_view.hpp>
-#include <samewhere/view/test_client.hpp>
+#include <samewhere/view/test_page.hpp>
 
 namespace samewhere::view {
 namespace {
@@ -45,42 +46,6 @@ std::string bytes_of(const run::RunOutcome& outcome) {
   return core::tum_text(report::measured_trajectory(record.frames)) +
          report::loops_json(record.ledger) + report::frames_csv(record.frames) +
          core::tum_text(record.odometry);
-}
-
-int port_of(const LiveView& view) {
-  return std::stoi(view.url().substr(view.url().rfind(':') + 1));
-}
-
-struct Event {
-  std::string name;
-  json data;
-};
-
-// Of a stream of chunks.
-std::vector<Event> events_in(const std::string& answer) {
-  std::string text;
-  std::size_t at = answer.find("\r\n\r\n") + 4;
-  while (at < answer.size()) {
-    const std::size_t size = std::stoul(answer.substr(at), nullptr, 16);
-    at = answer.find("\r\n", at) + 2;
-    text += answer.substr(at, size);
-    at += size + 2;
-  }
-  std::vector<Event> events;
-  for (at = text.find("event: "); at != std::string::npos; at = text.find("event: ", at)) {
-    const std::size_t end = text.find('\n', at);
-    const std::size_t data_end = text.find('\n', end + 1);
-    if (data_end == std::string::npos) break;
-    events.push_back(
-        {text.substr(at + 7, end - at - 7), json::parse(text.substr(end + 7, data_end - end - 7))});
-    at = data_end;
-  }
-  return events;
-}
-
-std::string open_events(TestClient& client, int port) {
-  client.send(fmt::format("GET /events HTTP/1.1\r\nHost: localhost:{}\r\n\r\n", port));
-  return client.receive(20.0, "\r\n\r\n");
 }
 
 // What a page of the walk is sent from before its first frame to its end, in order.
@@ -203,6 +168,67 @@ TEST(LiveView, LetsNoLiveCameraWait) {
   LiveView view({}, "");
   view.begin({.name = "camera", .is_live = true}, walk_config(false), false);
   EXPECT_EQ(status_of(post(port_of(view), "/control", R"({"is_paused":true})")), 400);
+}
+
+run::RunOutcome recognize_walk(run::Watcher* watcher, bool has_threads) {
+  pipeline::Config config =
+      pipeline::load_config("recognition", {}, {"retrieve.window_frames=4", "verify.min_views=1"});
+  config.source = "twin:office-loop?seed=5";
+  config.twin.num_frames = kNumFrames;
+  config.threads = has_threads;
+  return run::run_recognition(run::open_source(config), config, {}, true, watcher);
+}
+
+// The files of recognition that do not hold times.
+std::string bytes_of_recognition(const run::RunOutcome& outcome) {
+  return report::loops_json(outcome.record.ledger) + report::pairs_text(outcome.matches) +
+         report::pairs_text(outcome.accepted);
+}
+
+TEST(LiveView, ShowsRecognitionAndLeavesItAsItIs) {
+  for (const bool has_threads : {true, false}) {
+    LiveView view({}, "");
+    const TestPage page(view);
+    const run::RunOutcome seen = recognize_walk(&view, has_threads);
+    EXPECT_EQ(bytes_of_recognition(seen),
+              bytes_of_recognition(recognize_walk(nullptr, has_threads)));
+    rest(0.5);
+    const std::vector<Event> events = page.events();
+    ASSERT_FALSE(events.empty());
+    EXPECT_EQ(events.front().name, "start");
+    EXPECT_EQ(events.front().data.at("is_recognition"), true);
+    std::set<std::uint64_t> told;
+    std::set<std::string> names;
+    for (const Event& event : events) {
+      names.insert(event.name);
+      if (event.name != "candidates") continue;
+      for (const json& candidate : event.data) told.insert(candidate.at("id").get<std::uint64_t>());
+    }
+    EXPECT_EQ(names, (std::set<std::string>{"start", "pace", "pictures", "candidates", "image",
+                                            "status"}));
+    // but those that are decided at the end
+    EXPECT_GT(told.size(), report::final_rows(seen.record.ledger).size() / 2);
+  }
+}
+
+TEST(LiveView, ForgetsASessionWhereAnotherBegins) {
+  LiveView view({}, "");
+  const TestPage page(view);
+  const pipeline::Config config = walk_config(false);
+  view.begin({.name = "monday"}, config, false);
+  view.see_thumbnails({{core::FrameId(7), "picture"}});
+  rest(0.5);
+  view.begin({.name = "tuesday"}, config, false);
+  view.see_thumbnails({{core::FrameId(9), "picture"}});
+  rest(0.5);
+  std::vector<std::string> told;
+  for (const Event& event : page.events()) {
+    if (event.name == "start") told.push_back(event.data.at("title"));
+    if (event.name == "pictures")
+      for (const json& picture : event.data)
+        told.push_back(std::to_string(picture.at("frame").get<int>()));
+  }
+  EXPECT_EQ(told, (std::vector<std::string>{"monday", "7", "tuesday", "9"}));
 }
 
 TEST(Pace, IsThatOfTheRecording) {
