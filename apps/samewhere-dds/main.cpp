@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "../samewhere/view_options.hpp"
 #include "graph.hpp"
+#include "view_options.hpp"
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/program.hpp>

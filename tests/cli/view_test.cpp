@@ -48,8 +48,8 @@ constexpr const char* kThreeFrames = "run 'twin:office-loop?seed=2' --set twin.n
 
 TEST_F(View, PortThatIsTakenIsBadInputBeforeAnythingIsWritten) {
   const TakenPort taken;
-  const Outcome outcome =
-      run(fmt::format("{} --out {} --view --at {}", kThreeFrames, quoted(path("run")), taken.number()));
+  const Outcome outcome = run(
+      fmt::format("{} --out {} --view --at {}", kThreeFrames, quoted(path("run")), taken.number()));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find(fmt::format("127.0.0.1:{}: cannot be served", taken.number())),
             std::string::npos)
@@ -66,8 +66,8 @@ TEST_F(View, RunWithoutAPageEndsByItself) {
 }
 
 TEST_F(View, OtherMachinesNeedAToken) {
-  const Outcome outcome = run(
-      fmt::format("{} --out {} --view --at 0.0.0.0:38471 --quiet", kThreeFrames, quoted(path("run"))));
+  const Outcome outcome = run(fmt::format("{} --out {} --view --at 0.0.0.0:38471 --quiet",
+                                          kThreeFrames, quoted(path("run"))));
   EXPECT_EQ(outcome.exit_code, 0);
   const std::size_t at = outcome.err.find("?token=");
   ASSERT_NE(at, std::string::npos) << outcome.err;

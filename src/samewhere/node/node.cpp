@@ -205,10 +205,10 @@ void Node::prepare_grid() {
   if (config_.cameras != Cameras::kDepth || config_.grid_period_s == 0.0) return;
   const pipeline::Config config =
       library::config_of(options_.profile, options_.settings, options_.prior);
-  grid_.emplace(GridOutput::Settings{.dense = config.dense,
-                                     .period_s = config_.grid_period_s,
-                                     .has_thread = options_.threads},
-                setup_->first_camera, publisher_);
+  grid_.emplace(
+      GridOutput::Settings{
+          .dense = config.dense, .period_s = config_.grid_period_s, .has_thread = options_.threads},
+      setup_->first_camera, publisher_);
 }
 
 void Node::track(const FrameSet& frame) {

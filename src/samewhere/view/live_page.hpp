@@ -67,7 +67,7 @@ class LivePage {
   LivePage(const core::SourceInfo& source, const pipeline::Config& config, const LiveKind& kind);
 
   void add(LiveNews news);
-  // Server-sent events with all that the cursor lacks. One of an earlier session begins anew.
+  // Server-sent events with all that the cursor lacks. One of an earlier session is told all.
   std::string events_for(LiveCursor& cursor) const;
 
  private:

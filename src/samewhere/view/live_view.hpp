@@ -13,9 +13,9 @@
 
 namespace samewhere::view {
 
-// Shows a run in browsers while it goes on: SLAM, recognition, or the sessions of a node. A page that
-// grows, and where finish() is called the report at the end. Costs the run next to nothing while no
-// page is open. A page may let a recording wait; when the last page is closed, it goes on.
+// Shows a run in browsers while it goes on: SLAM, recognition, or the sessions of a node. A page
+// that grows, and where finish() is called the report at the end. Costs the run next to nothing
+// while no page is open. A page may let a recording wait; when the last page is closed, it goes on.
 class LiveView : public run::Watcher {
  public:
   // Serves at once. Throws InputError if the place cannot be served. A place that other
