@@ -25,6 +25,7 @@ SOURCE = "twin:twin-corridors?seed=22&speed=2"
 SETTINGS = ["twin.num_frames=120", "retrieve.window_frames=10", "map.min_shared=1000", "verify.min_look_alike_distance_m=0.3"]
 SAME_FILES = {"run": ["trajectory.tum", "odometry.tum", "loops.json", "frames.csv", "map.ply"],
               "loops": ["loops.json", "matches.txt", "accepted.txt"]}
+FEW_FRAMES = ("--set", "twin.num_frames=50")  # recognition verifies each view with all before
 NUM_UPDATES = 30
 
 
@@ -147,7 +148,7 @@ def check_recognition(page, pictures):
 def check_loops(program, driver, scratch, pictures):
     folder = scratch / "seen-loops"
     driver.get_log("browser")  # of pages whose server was ended
-    process = subprocess.Popen(command_of(program, "loops", folder, "--view"), stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command_of(program, "loops", folder, "--view", *FEW_FRAMES), stderr=subprocess.PIPE, text=True)
     try:
         url = url_of(process)
         page = LivePage(driver, url)
@@ -157,14 +158,14 @@ def check_loops(program, driver, scratch, pictures):
         check_quiet(page, url)
         driver.get("about:blank")
         page.check("without a page the program ends", process.wait(timeout=30) == 0)
-        check_same(page, program, "loops", folder, scratch / "unseen-loops")
+        check_same(page, program, "loops", folder, scratch / "unseen-loops", *FEW_FRAMES)
         return page.num_failed
     finally:
         process.kill()
 
 
-def check_same(page, program, command, folder, other):
-    subprocess.run(command_of(program, command, other), check=True, stdout=subprocess.DEVNULL)
+def check_same(page, program, command, folder, other, *more):
+    subprocess.run(command_of(program, command, other, *more), check=True, stdout=subprocess.DEVNULL)
     for name in SAME_FILES[command]:
         page.check(f"{name} of `{command}` is the same without a viewer", (folder / name).read_bytes() == (other / name).read_bytes())
 
