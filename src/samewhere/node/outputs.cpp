@@ -124,6 +124,10 @@ void append(std::vector<std::uint8_t>& data, const Map::Landmark& landmark) {
 
 }  // namespace
 
+messages::Header header_of(const std::string& frame, double stamp_s) {
+  return {.stamp = messages::time_of(stamp_s), .frame_id = frame};
+}
+
 messages::PoseWithCovarianceStamped pose_message(const messages::Header& header,
                                                  const Pose& map_from_base,
                                                  const Eigen::Matrix3d& map_from_body,

@@ -13,6 +13,8 @@
 
 namespace samewhere::node {
 
+messages::Header header_of(const std::string& frame, double stamp_s);
+
 // The pose of the base in the map. `covariance` is that of the body relative to its reference
 // keyframe, in axes of the body: they are turned into those of the map, which ROS expects, by
 // `map_from_body`, as if the keyframe had the body's axes.
