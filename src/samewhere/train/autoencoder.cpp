@@ -1,4 +1,6 @@
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include <ATen/Parallel.h>
 #include <dlfcn.h>
@@ -15,6 +17,22 @@ namespace {
 
 using torch::Tensor;
 
+// The first layer starts as derivatives of a Gaussian in as many directions as it has channels.
+void point_edges_all_ways(Tensor& weight) {
+  const torch::NoGradGuard no_gradient;
+  const std::int64_t num_channels = weight.size(0);
+  const std::int64_t side = weight.size(2);
+  const Tensor at = torch::arange(side) - 0.5 * static_cast<double>(side - 1);
+  const double sigma = static_cast<double>(side - 1) / 4.0;
+  const Tensor bell = torch::exp(-at.square() / (2.0 * sigma * sigma));
+  const Tensor along = torch::outer(bell, bell * at) / static_cast<double>(side);
+  for (std::int64_t i = 0; i < num_channels; ++i) {
+    const double angle =
+        2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(num_channels);
+    weight[i][0].copy_(std::cos(angle) * along + std::sin(angle) * along.t());
+  }
+}
+
 class Layers : public torch::nn::Module {
  public:
   explicit Layers(const NetworkPlan& plan) : plan_(plan) {
@@ -24,6 +42,7 @@ class Layers : public torch::nn::Module {
                                               std::make_shared<NormedConvolution>(convolution)));
     }
     decoder_ = register_module("decoder", torch::nn::Linear(plan.code_size, plan.target_size));
+    point_edges_all_ways(convolutions_.front()->weight());
     // at 0 a sigmoid is four times flatter than what it stands for, and would learn as slowly
     torch::nn::init::constant_(convolutions_.back()->norm()->weight, 4.0);
     // what is not known yet is not guessed: it starts from the mean target
@@ -34,14 +53,16 @@ class Layers : public torch::nn::Module {
   Tensor encode(Tensor x) {
     for (std::size_t i = 0; i < convolutions_.size(); ++i) {
       x = convolutions_[i]->forward(x);
-      if (i + 1 < convolutions_.size()) x = torch::max_pool2d(torch::relu(x), 2, 2);
-      if (i == 0) x = x * torch::rsqrt(kResponseFloor + x.square().sum(1, true));
+      if (i + 1 < convolutions_.size()) x = torch::relu(x);
+      if (i > 0) continue;
+      x = torch::avg_pool2d(x, kCellSide, kCellSide);
+      x = x * torch::rsqrt(kResponseFloor + x.square().sum(1, true));
     }
     x = torch::avg_pool2d(x, kCodeWindow, kCodeStep);
     return torch::sigmoid(x).flatten(1);
   }
 
-  Tensor forward(const Tensor& x) { return decoder_(encode(x)); }
+  Tensor decode(const Tensor& codes) { return decoder_(codes); }
 
   std::vector<Convolution> folded() const {
     std::vector<Convolution> all;
@@ -67,24 +88,33 @@ SetNumThreads openblas_set_num_threads() {
 }  // namespace
 
 struct Autoencoder::Network {
-  explicit Network(const NetworkPlan& plan)
-      : layers(plan), adam(layers.parameters(), torch::optim::AdamOptions()) {}
+  Network(const NetworkPlan& plan, const ContrastConfig& contrast_config)
+      : contrast(contrast_config),
+        layers(plan),
+        adam(layers.parameters(), torch::optim::AdamOptions()) {}
 
   Tensor error(const Batch& batch) {
     const NetworkPlan& plan = layers.plan();
     const std::int64_t n = batch.num_examples;
     const Tensor inputs =
         tensor_of(batch.inputs, {n, 1, plan.input_px.height, plan.input_px.width});
-    return torch::mse_loss(layers.forward(inputs), tensor_of(batch.targets, {n, plan.target_size}));
+    const Tensor codes = layers.encode(inputs);
+    const Tensor error =
+        torch::mse_loss(layers.decode(codes), tensor_of(batch.targets, {n, plan.target_size}));
+    if (contrast.weight == 0.0 || batch.other_places.empty()) return error;
+    return error +
+           contrast.weight * contrastive_loss(codes, batch.other_places, contrast.temperature);
   }
 
+  ContrastConfig contrast;
   Layers layers;
   torch::optim::Adam adam;
 };
 
-Autoencoder::Autoencoder(const NetworkPlan& plan, std::uint64_t seed) {
+Autoencoder::Autoencoder(const NetworkPlan& plan, std::uint64_t seed,
+                         const ContrastConfig& contrast) {
   torch::manual_seed(seed);
-  network_ = std::make_unique<Network>(plan);
+  network_ = std::make_unique<Network>(plan, contrast);
 }
 
 Autoencoder::~Autoencoder() = default;

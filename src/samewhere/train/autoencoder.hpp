@@ -11,21 +11,27 @@
 
 namespace samewhere::train {
 
+// How much it counts that views of one place have like codes, those of other places unlike ones.
+struct ContrastConfig {
+  double weight = 0.0;
+  double temperature = 0.07;
+};
+
 // A convolutional encoder and a linear decoder that learn together (libtorch, Adam of Kingma and Ba
 // 2015). Each convolution is followed by batch normalisation (Ioffe and Szegedy 2015), which
 // encoder() folds into its weights. On one thread the same calls give the same bits.
 class Autoencoder {
  public:
   // Weights are drawn by `seed`.
-  Autoencoder(const NetworkPlan& plan, std::uint64_t seed);
+  Autoencoder(const NetworkPlan& plan, std::uint64_t seed, const ContrastConfig& contrast = {});
   Autoencoder(const Autoencoder&) = delete;
   Autoencoder& operator=(const Autoencoder&) = delete;
   ~Autoencoder();
 
-  // One step down the gradient. Returns the mean squared error before it, in shares of the targets'
-  // variance (TargetScale).
+  // One step down the gradient. Returns the loss before it: the mean squared error in shares of the
+  // targets' variance (TargetScale) and, of a batch with pairs, weight x contrastive_loss().
   double learn(const Batch& batch, double learning_rate);
-  // The same error, nothing learnt.
+  // The same loss, nothing learnt.
   double error(const Batch& batch);
   // Codes of inputs one after the other.
   std::vector<float> encode(std::span<const float> inputs);

@@ -17,7 +17,8 @@ namespace {
 Batch batch_of(const ImageSet& images, const Config& config, std::uint64_t seed) {
   std::vector<int> all;
   for (int i = 0; i < static_cast<int>(images.views.size()); ++i) all.push_back(i);
-  return ExampleMaker(config, images.views, scale_of_targets(images.views, all, config.target))
+  return ExampleMaker(config, images, {.training = all, .validation = {}},
+                      scale_of_targets(images.views, all, config.target))
       .batch(all, seed);
 }
 
@@ -87,6 +88,46 @@ TEST(Autoencoder, LearnsAndRestoredGoesOnWithTheSameBits) {
   EXPECT_EQ(parameters_of(first.encoder().convolutions),
             parameters_of(second.encoder().convolutions));
   EXPECT_EQ(first.error(batch), second.error(batch));
+}
+
+// Five sources of one picture each: all of other places.
+ImageSet places_apart() {
+  ImageSet images = test_images(5);
+  images.sources.assign(5, {"picture", 1});
+  return images;
+}
+
+// Targets that are all alike teach nothing: what is learnt, the pairs have taught.
+TEST(ContrastiveLoss, DrivesCodesOfOtherPlacesApart) {
+  set_num_threads(1);
+  const ImageSet images = places_apart();
+  const Config config = test_config();
+  Autoencoder autoencoder(plan_network(config), 1, {.weight = 1.0, .temperature = 0.07});
+  const auto learn = [&](std::uint64_t seed) {
+    Batch batch = batch_of(images, config, seed);
+    batch.targets.assign(batch.targets.size(), 0.0F);
+    return autoencoder.learn(batch, 3e-3);
+  };
+  double first = 0.0;
+  double last = 0.0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const double loss = learn(i);
+    if (i < 10) first += loss;
+    if (i >= 50) last += loss;
+  }
+  EXPECT_LT(last, first / 2.0);
+}
+
+TEST(ContrastiveLoss, IsNothingWherePlacesMayBeTheSame) {
+  set_num_threads(1);
+  const Config config = test_config();
+  Batch batch = batch_of(test_images(5), config, 1);
+  ASSERT_THAT(batch.other_places, testing::Each(0)) << "neighbours in one source";
+  Autoencoder with(plan_network(config), 1, {.weight = 1.0, .temperature = 0.07});
+  Autoencoder without(plan_network(config), 1);
+  EXPECT_NEAR(with.error(batch), without.error(batch), 1e-6);
+  batch.other_places.assign(25, 1);
+  EXPECT_GT(with.error(batch), without.error(batch) + 0.01);
 }
 
 TEST(Autoencoder, BytesThatAreNoStateAreRefused) {

@@ -22,8 +22,11 @@ struct Config {
   int threads = 0;
   InputSize input_size = InputSize::k120x160;
   int code_size = 1056;
-  int channels = 64;
+  int channels = 16;
   Target target = Target::kHog;
+  double contrast = 0.3;
+  double temperature = 0.07;
+  bool pairs = true;
   bool warp = true;
   int twin_step = 5;
 };
@@ -47,10 +50,22 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
          .min = 24,
          .max = 24 * 256});
   visit("channels", config.channels,
-        {.help = "of the first layer; the second has twice as many", .min = 1, .max = 256});
+        {.help = "of the first layer; the others have four times as many", .min = 1, .max = 256});
   visit("target", config.target,
         {.help = "what is reconstructed: HOG of the undistorted view, or its pixels",
          .choices = {"hog", "pixels"}});
+  visit("contrast", config.contrast,
+        {.help = "weight of the contrastive loss; 0: reconstruction alone",
+         .min = 0.0,
+         .max = 100.0});
+  visit("temperature", config.temperature,
+        {.help = "of the contrastive loss: similarities (NCC) are divided by it",
+         .min = 0.01,
+         .max = 10.0});
+  visit(
+      "pairs", config.pairs,
+      {.help = "contrastive loss: true: of a rendered walk, the second view of a pair is any frame "
+               "of the same place; false: the same image"});
   visit("warp", config.warp,
         {.help = "true: the input is seen from another viewpoint; false: it is not"});
   visit("twin_step", config.twin_step,

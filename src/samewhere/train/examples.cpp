@@ -169,21 +169,38 @@ TargetScale scale_of_targets(std::span<const cv::Mat> views, std::span<const int
   return scale;
 }
 
-ExampleMaker::ExampleMaker(const Config& config, std::span<const cv::Mat> views, TargetScale scale)
-    : config_(config), views_(views), scale_(std::move(scale)) {}
+ExampleMaker::ExampleMaker(const Config& config, const ImageSet& images, const Split& split,
+                           TargetScale scale)
+    : config_(config),
+      views_(images.views),
+      pairs_(images, split, config.pairs),
+      scale_(std::move(scale)) {}
+
+void ExampleMaker::add(int index, core::Random& random, Batch& batch) const {
+  const cv::Mat& view = views_[static_cast<std::size_t>(index)];
+  const cv::Mat input = distorted_input(view, config_, random);
+  batch.inputs.insert(batch.inputs.end(), input.begin<float>(), input.end<float>());
+  const std::vector<float> target = target_of(view, config_.target);
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    batch.targets.push_back((target[i] - scale_.mean[i]) / scale_.deviation);
+  }
+  ++batch.num_examples;
+}
 
 Batch ExampleMaker::batch(std::span<const int> indices, std::uint64_t seed) const {
-  Batch batch{.num_examples = static_cast<int>(indices.size())};
+  Batch batch;
   for (const int index : indices) {
-    const cv::Mat& view = views_[static_cast<std::size_t>(index)];
     core::Random random(core::seed_of(seed, "distort", static_cast<std::uint64_t>(index)));
-    const cv::Mat input = distorted_input(view, config_, random);
-    batch.inputs.insert(batch.inputs.end(), input.begin<float>(), input.end<float>());
-    const std::vector<float> target = target_of(view, config_.target);
-    for (std::size_t i = 0; i < target.size(); ++i) {
-      batch.targets.push_back((target[i] - scale_.mean[i]) / scale_.deviation);
-    }
+    add(index, random, batch);
   }
+  if (config_.contrast == 0.0) return batch;
+  std::vector<int> partners;
+  for (const int index : indices) {
+    core::Random random(core::seed_of(seed, "partner", static_cast<std::uint64_t>(index)));
+    partners.push_back(pairs_.partner(index, random));
+    add(partners.back(), random, batch);
+  }
+  batch.other_places = pairs_.other_places(indices, partners);
   return batch;
 }
 

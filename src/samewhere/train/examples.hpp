@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -7,14 +8,17 @@
 
 #include <samewhere/core/random.hpp>
 #include <samewhere/train/config.hpp>
+#include <samewhere/train/place_pairs.hpp>
 
 namespace samewhere::train {
 
-// So many inputs one after the other, and what is to be made of each.
+// So many inputs one after the other, and what is to be made of each. With pairs: first one view of
+// each pair, then the other of each in the same order.
 struct Batch {
   int num_examples = 0;
-  std::vector<float> inputs;   // num_examples x rows x columns, in [0, 1]
-  std::vector<float> targets;  // num_examples x target_length(), scaled
+  std::vector<float> inputs;               // num_examples x rows x columns, in [0, 1]
+  std::vector<float> targets;              // num_examples x target_length(), scaled
+  std::vector<std::uint8_t> other_places;  // PlacePairs::other_places; empty without pairs
 };
 
 cv::Size input_size_px(InputSize size);
@@ -49,17 +53,21 @@ TargetScale scale_of_targets(std::span<const cv::Mat> views, std::span<const int
 // Makes batches of some views.
 class ExampleMaker {
  public:
-  // `views` must outlive it.
-  ExampleMaker(const Config& config, std::span<const cv::Mat> views, TargetScale scale);
+  // `images` must outlive it.
+  ExampleMaker(const Config& config, const ImageSet& images, const Split& split, TargetScale scale);
 
-  // Distorted views `indices` and their scaled targets. View i is distorted as `seed` and i say.
+  // Distorted views `indices` and their scaled targets; if config.contrast is not 0 twice as many:
+  // a partner of each behind them, distorted otherwise. View i is distorted as `seed` and i say.
   Batch batch(std::span<const int> indices, std::uint64_t seed) const;
   // The view as it is.
   cv::Mat input(int index) const;
 
  private:
+  void add(int index, core::Random& random, Batch& batch) const;
+
   Config config_;
   std::span<const cv::Mat> views_;
+  PlacePairs pairs_;
   TargetScale scale_;
 };
 

@@ -13,8 +13,8 @@ TEST(Examples, DependOnSeedAndImageOnly) {
   const ImageSet images = test_images(3);
   const std::vector<int> all = {0, 1, 2};
   const std::vector<int> last = {2};
-  const Config config;
-  const ExampleMaker maker(config, images.views,
+  const Config config{.contrast = 0.0};
+  const ExampleMaker maker(config, images, {.training = all, .validation = {}},
                            scale_of_targets(images.views, all, config.target));
   const Batch batch = maker.batch(all, 11);
   const Batch alone = maker.batch(last, 11);
@@ -25,6 +25,31 @@ TEST(Examples, DependOnSeedAndImageOnly) {
       std::equal(alone.inputs.begin(), alone.inputs.end(), batch.inputs.begin() + 2 * 120 * 160));
   EXPECT_NE(alone.inputs, other.inputs);
   EXPECT_EQ(alone.targets, other.targets) << "the target is of the undistorted view";
+}
+
+TEST(Examples, EachViewHasAPartnerBehindIt) {
+  const ImageSet images = test_images(3);
+  const std::vector<int> all = {0, 1, 2};
+  const Split split{.training = all, .validation = {}};
+  const auto batch_with = [&](double contrast) {
+    return ExampleMaker({.contrast = contrast}, images, split,
+                        scale_of_targets(images.views, all, Target::kHog))
+        .batch(all, 11);
+  };
+  const Batch alone = batch_with(0.0);
+  const Batch paired = batch_with(0.5);
+  EXPECT_TRUE(alone.other_places.empty());
+  EXPECT_EQ(paired.other_places.size(), 9U);
+  ASSERT_EQ(paired.num_examples, 6);
+  ASSERT_EQ(paired.inputs.size(), 2 * alone.inputs.size());
+  const auto middle = paired.inputs.begin() + static_cast<std::ptrdiff_t>(alone.inputs.size());
+  EXPECT_TRUE(std::equal(paired.inputs.begin(), middle, alone.inputs.begin()));
+  EXPECT_FALSE(std::equal(middle, paired.inputs.end(), alone.inputs.begin()))
+      << "distorted otherwise";
+  EXPECT_TRUE(
+      std::equal(alone.targets.begin(), alone.targets.end(),
+                 paired.targets.begin() + static_cast<std::ptrdiff_t>(alone.targets.size())))
+      << "no other frame of the place is known: the view itself";
 }
 
 TEST(Examples, StayInTheRangeOfAPicture) {
@@ -75,7 +100,7 @@ TEST(Examples, ScaledTargetsHaveMeanZeroAndVarianceOne) {
   const ImageSet images = test_images(5);
   const std::vector<int> all = {0, 1, 2, 3, 4};
   for (const Target target : {Target::kHog, Target::kPixels}) {
-    const ExampleMaker maker({.target = target}, images.views,
+    const ExampleMaker maker({.target = target}, images, {.training = all, .validation = {}},
                              scale_of_targets(images.views, all, target));
     const std::vector<float> targets = maker.batch(all, 1).targets;
     const auto length = static_cast<std::size_t>(target_length(target));

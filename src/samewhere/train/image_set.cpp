@@ -50,7 +50,24 @@ struct OpenSource {
   std::string name;
   int num_images = 0;
   ImageMaker make;
+  core::PlaceTruthMatrix places;
 };
+
+// Of every `step`th frame.
+core::PlaceTruthMatrix thinned(const core::PlaceTruthMatrix& all, int step) {
+  core::PlaceTruthMatrix places{.num_frames = (all.num_frames + step - 1) / step};
+  for (int query = 0; query < all.num_frames; query += step) {
+    for (int match = 0; match < all.num_frames; match += step) {
+      places.values.push_back(all.at(query, match));
+    }
+  }
+  return places;
+}
+
+core::PlaceTruthMatrix places_of(const twin::Walkthrough& walk, const Config& config) {
+  if (config.contrast == 0.0 || !walk.truth().places) return {};
+  return thinned(*walk.truth().places, config.twin_step);
+}
 
 OpenSource open_twin(const std::string& name, const Config& config) {
   const twin::Config usual;
@@ -61,7 +78,8 @@ OpenSource open_twin(const std::string& name, const Config& config) {
           .num_images = (walk->num_frames() + step - 1) / step,
           .make = [walk, studio, step, size = config.input_size](int i) -> std::optional<cv::Mat> {
             return prepared(studio->pictures(i * step).images.front(), size);
-          }};
+          },
+          .places = places_of(*walk, config)};
 }
 
 OpenSource open_files(const std::string& name, const Config& config) {
@@ -76,13 +94,14 @@ OpenSource open_files(const std::string& name, const Config& config) {
             } catch (const core::InputError&) {
               return std::nullopt;  // counted
             }
-          }};
+          },
+          .places = {}};
 }
 
 // Reads it into `images`.
 void read_source(const OpenSource& source, bool is_held_back, const ReadingProgress& on_progress,
                  ImageSet& images) {
-  SourceCount count{.source = source.name, .is_held_back = is_held_back};
+  SourceCount count{.source = source.name, .is_held_back = is_held_back, .places = source.places};
   core::OrderedWorkers<std::optional<cv::Mat>> workers(source.num_images,
                                                        core::num_hardware_threads(), source.make);
   for (int i = 0; i < source.num_images && !core::is_interrupted(); ++i) {
@@ -174,6 +193,12 @@ int source_of(const ImageSet& images, int view) {
     if (view < end) return static_cast<int>(i);
   }
   throw core::ContractError("every view is from a source");
+}
+
+int first_view_of(const ImageSet& images, int source) {
+  int first = 0;
+  for (int i = 0; i < source; ++i) first += images.sources[static_cast<std::size_t>(i)].num_images;
+  return first;
 }
 
 ImageSet read_images(std::span<const std::string> sources, std::span<const std::string> validate,

@@ -8,6 +8,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <samewhere/core/truth.hpp>
 #include <samewhere/train/config.hpp>
 
 namespace samewhere::train {
@@ -16,8 +17,9 @@ namespace samewhere::train {
 struct SourceCount {
   std::string source;  // as it was named
   int num_images = 0;
-  int num_unreadable = 0;     // skipped
-  bool is_held_back = false;  // only to validate with
+  int num_unreadable = 0;         // skipped
+  bool is_held_back = false;      // only to validate with
+  core::PlaceTruthMatrix places;  // over its views; of no frames where it is not known
 };
 
 // All views to learn from and to validate with, prepared: grey, equalised, small.
@@ -29,6 +31,8 @@ struct ImageSet {
 
 // Index of the source that a view is from.
 int source_of(const ImageSet& images, int view);
+// Index of a source's first view.
+int first_view_of(const ImageSet& images, int source);
 
 // Called now and then while a source is read: its name, images done, images in all.
 using ReadingProgress = std::function<void(const std::string& source, int done, int total)>;

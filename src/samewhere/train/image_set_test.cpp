@@ -75,6 +75,10 @@ TEST(ImageSet, ARenderedWalkGivesEachNthFrame) {
   const ImageSet images = read({"twin:office-loop?seed=3"}, config);
   ASSERT_GE(images.views.size(), 2U);
   EXPECT_GT(cv::norm(images.views[0], images.views[1], cv::NORM_L1), 0.0);
+  const core::PlaceTruthMatrix& places = images.sources[0].places;
+  ASSERT_EQ(places.num_frames, static_cast<int>(images.views.size()));
+  EXPECT_EQ(places.at(1, 1), core::PlaceTruth::kSame);
+  EXPECT_EQ(places.at(0, 1), core::PlaceTruth::kDifferent) << "27 s apart on a lap";
 }
 
 TEST(ImageSet, ASourceToValidateWithIsKeptApart) {

@@ -24,8 +24,10 @@ OrderedJson layers_as_json(const NetworkPlan& plan) {
   for (std::size_t i = 0; i < plan.convolutions.size(); ++i) {
     const ConvolutionPlan& convolution = plan.convolutions[i];
     layers.push_back(layer_text(convolution));
-    if (i + 1 < plan.convolutions.size()) layers.push_back("ReLU, maximum 2 x 2");
-    if (i == 0) layers.push_back("each position over sqrt(1 + the sum of its squares)");
+    if (i + 1 < plan.convolutions.size()) layers.push_back("ReLU");
+    if (i > 0) continue;
+    layers.push_back(fmt::format("mean {0} x {0}, stride {0}", kCellSide));
+    layers.push_back("each position over sqrt(1 + the sum of its squares)");
   }
   layers.push_back(fmt::format("mean {0} x {0}, stride {1}, sigmoid", kCodeWindow, kCodeStep));
   return layers;

@@ -23,11 +23,12 @@ NetworkPlan plan_network(const Config& config) {
   check_code_size(config.code_size);
   const cv::Size input_px = input_size_px(config.input_size);
   const int stride_px = input_px.height / 60;
-  const int wide = 2 * config.channels;
+  const int wide = 4 * config.channels;
   return {.input_px = input_px,
-          .convolutions = {{1, config.channels, 2 * stride_px + 1, stride_px, 2 * stride_px},
-                           {config.channels, wide, 4, 1, 2},
-                           {wide, config.code_size / kNumPositions, 3, 1, 0}},
+          .convolutions = {{1, config.channels, 2 * stride_px + 1, stride_px, stride_px},
+                           {config.channels, wide, 3, 1, 1},
+                           {wide, wide, 3, 1, 1},
+                           {wide, config.code_size / kNumPositions, 3, 1, 1}},
           .code_size = config.code_size,
           .target_size = target_length(config.target)};
 }

@@ -42,10 +42,9 @@ void add_nodes(onnx::GraphProto& graph, const Encoder& encoder) {
     add_convolution(graph, chain, "convolution" + number, encoder.convolutions[i]);
     if (i + 1 == num_convolutions) break;
     chain.add("Relu", "relu" + number);
-    add_pooling(chain, "MaxPool", "maximum" + number, 2, 2);
-    if (i == 0)
-      add_response_norm(chain, "response", encoder.convolutions[i].plan.num_outputs,
-                        kResponseFloor);
+    if (i > 0) continue;
+    add_pooling(chain, "AveragePool", "cells", kCellSide, kCellSide);
+    add_response_norm(chain, "response", encoder.convolutions[i].plan.num_outputs, kResponseFloor);
   }
   add_pooling(chain, "AveragePool", "mean", kCodeWindow, kCodeStep);
   chain.add("Sigmoid", "bounded");

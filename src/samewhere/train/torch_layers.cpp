@@ -43,6 +43,28 @@ Convolution NormedConvolution::folded() const {
   return {plan_, numbers_of(weights.to(torch::kFloat)), numbers_of(biases.to(torch::kFloat))};
 }
 
+torch::Tensor contrastive_loss(const torch::Tensor& codes,
+                               std::span<const std::uint8_t> other_places, double temperature) {
+  constexpr double kShortest = 1e-9;  // a constant code has NCC 0
+  constexpr double kImpossible = -1e4;
+  const std::int64_t num_pairs = codes.size(0) / 2;
+  core::require(other_places.size() == static_cast<std::size_t>(num_pairs * num_pairs),
+                "of every two pairs it is known whether they may be set against each other");
+  const torch::Tensor may =
+      torch::from_blob(const_cast<std::uint8_t*>(other_places.data()),  // NOLINT: never written
+                       {num_pairs, num_pairs}, torch::kUInt8)
+          .to(torch::kBool);
+  const torch::Tensor deviations = codes - codes.mean(1, true);
+  const torch::Tensor unit = deviations / deviations.norm(2, 1, true).clamp_min(kShortest);
+  const torch::Tensor ncc =
+      torch::matmul(unit.slice(0, 0, num_pairs), unit.slice(0, num_pairs).t()) / temperature;
+  const torch::Tensor is_out = torch::logical_not(may | torch::eye(num_pairs, torch::kBool));
+  const torch::Tensor scores = ncc.masked_fill(is_out, kImpossible);
+  const torch::Tensor forth = torch::log_softmax(scores, 1).diagonal();
+  const torch::Tensor back = torch::log_softmax(scores, 0).diagonal();
+  return -(forth + back).mean() / 2;
+}
+
 std::string state_of(const torch::nn::Module& layers, const torch::optim::Adam& adam) {
   torch::serialize::OutputArchive archive;
   torch::serialize::OutputArchive of_layers;

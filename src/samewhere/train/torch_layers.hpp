@@ -2,6 +2,7 @@
 
 // What the networks that learn share of libtorch; only they include this.
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,12 @@ class NormedConvolution : public torch::nn::Module {
   torch::nn::Conv2d convolution_;
   torch::nn::BatchNorm2d norm_;
 };
+
+// InfoNCE (van den Oord et al. 2018) over NCC: how badly the code of one view of a pair finds the
+// other among those of other places, in both directions, mean over pairs. `codes`: 2n rows, pair i
+// is rows i and n + i. `other_places`: n x n, 1 where pairs i and j may be set against each other.
+torch::Tensor contrastive_loss(const torch::Tensor& codes,
+                               std::span<const std::uint8_t> other_places, double temperature);
 
 // Layers and Adam as bytes; and back into those of the same shape. Throws InputError on foreign
 // bytes.

@@ -38,7 +38,7 @@ Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::
     : config_(config),
       plan_(plan_network(config)),
       split_(split_views(images, seed_of(config))),
-      examples_(config, images.views,
+      examples_(config, images, split_,
                 scale_of_targets(images.views, split_.training, config.target)),
       run_(schedule_of(config),
            {.settings = settings_text(config),
@@ -46,7 +46,8 @@ Trainer::Trainer(const Config& config, const ImageSet& images, std::filesystem::
             .images_sha256 = images.sha256,
             .commits = {commit}},
            std::move(checkpoint), "--images"),
-      autoencoder_(plan_, seed_of(config)) {
+      autoencoder_(plan_, seed_of(config),
+                   {.weight = config.contrast, .temperature = config.temperature}) {
   if (!history().empty()) autoencoder_.restore(run_.state().learner);
 }
 
@@ -63,11 +64,14 @@ std::optional<double> Trainer::learn(const std::function<void(int, int)>& on_pro
   });
   double sum = 0.0;
   int num_done = 0;
+  std::size_t index = 0;
   while (const std::optional<Batch> batch = loader.next()) {
     if (core::is_interrupted()) return std::nullopt;
-    sum += batch->num_examples * autoencoder_.learn(*batch, run_.learning_rate());
+    const auto num_images = static_cast<int>(batches[index].size());
+    sum += num_images * autoencoder_.learn(*batch, run_.learning_rate());
     run_.require_finite(sum);
-    num_done += batch->num_examples;
+    num_done += num_images;
+    ++index;
     on_progress(num_done, static_cast<int>(split_.training.size()));
   }
   return sum / num_done;
@@ -78,7 +82,7 @@ double Trainer::validation_error() {
   double sum = 0.0;
   for (const std::vector<int>& indices : cut(split_.validation, config_.batch)) {
     const Batch batch = examples_.batch(indices, core::seed_of(seed_of(config_), "validation", 0));
-    sum += batch.num_examples * autoencoder_.error(batch);
+    sum += static_cast<double>(indices.size()) * autoencoder_.error(batch);
   }
   return sum / static_cast<double>(split_.validation.size());
 }
