@@ -3,6 +3,7 @@
 # SAMEWHERE_TWIN=OFF: no Embree. twin:PRESET and `samewhere twin` are refused with one line.
 # SAMEWHERE_DENSE=OFF: no OctoMap. `samewhere dense` is refused with one line.
 # SAMEWHERE_DDS=OFF, or no Cyclone DDS installed: `samewhere dds` is refused with one line.
+# SAMEWHERE_MATIO=OFF, or no libmatio installed: matrices of same places are read as text only.
 # Of a pair of files x.cpp and x_without.cpp one is compiled; tests that need what is left out are
 # left out, too.
 
@@ -34,6 +35,20 @@ if(SAMEWHERE_DDS)
   endif()
 endif()
 
+if(SAMEWHERE_MATIO)
+  find_path(SAMEWHERE_MATIO_FOLDER matio.h)
+  find_library(SAMEWHERE_MATIO_LIBRARY matio)
+  if(SAMEWHERE_MATIO_FOLDER AND SAMEWHERE_MATIO_LIBRARY)
+    add_library(samewhere_matio INTERFACE)
+    target_include_directories(samewhere_matio SYSTEM INTERFACE ${SAMEWHERE_MATIO_FOLDER})
+    target_link_libraries(samewhere_matio INTERFACE ${SAMEWHERE_MATIO_LIBRARY})
+    set(SAMEWHERE_MATIO_TARGET samewhere_matio)
+  else()
+    message(STATUS "Found no libmatio: matrices of same places are not read from MATLAB files. "
+                   "On Debian and Ubuntu it is the package libmatio-dev.")
+  endif()
+endif()
+
 # samewhere_leave_out_tests(SOURCES): takes the tests of parts that are left out from the list
 # SOURCES, and those of a build without a part (x_without_test.cpp) where the part is there.
 function(samewhere_leave_out_tests SOURCES)
@@ -55,6 +70,11 @@ function(samewhere_leave_out_tests SOURCES)
     list(FILTER sources EXCLUDE REGEX "/dense/[a-z_]*_without_test\\.cpp$")
   else()
     list(FILTER sources EXCLUDE REGEX "/dense/octree_map_test\\.cpp$|^cli/dense_test\\.cpp$")
+  endif()
+  if(SAMEWHERE_MATIO_TARGET)
+    list(FILTER sources EXCLUDE REGEX "/input/mat_file_without_test\\.cpp$")
+  else()
+    list(FILTER sources EXCLUDE REGEX "/input/mat_file_test\\.cpp$")
   endif()
   set(${SOURCES} ${sources} PARENT_SCOPE)
 endfunction()

@@ -6,6 +6,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "commands.hpp"
 #include "options.hpp"
@@ -15,6 +16,7 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/terminal.hpp>
 #include <samewhere/input/bag_source.hpp>
+#include <samewhere/paper/protocols.hpp>
 #include <samewhere/report/figure.hpp>
 #include <samewhere/report/table.hpp>
 #include <samewhere/run/open_source.hpp>
@@ -97,17 +99,55 @@ void print_bag(const std::filesystem::path& file, const input::Config& config) {
   print_choice(file, bag->topics(), config);
 }
 
-void print_source(const pipeline::Config& config) {
+std::string window_text(const pipeline::Config& config, const core::SourceInfo& info) {
+  const int window_frames = run::with_window_in_frames(config, info).retrieve.window_frames;
+  if (config.retrieve.window_frames >= 0) return fmt::format("{} frames", window_frames);
+  return fmt::format("{} s, {} frames", config.retrieve.window_s, window_frames);
+}
+
+std::string truth_text(const pipeline::Config& config, const core::SourceInfo& info,
+                       const core::Truth& truth) {
+  if (!truth.places) return "none";
+  const int window_frames = run::with_window_in_frames(config, info).retrieve.window_frames;
+  return fmt::format("{} of {} queries have a loop",
+                     paper::num_queries_with_loop(*truth.places, window_frames),
+                     truth.places->num_frames);
+}
+
+void add_truth_of_places(const pipeline::Config& config, const paper::Protocol* protocol,
+                         const core::Source& source, std::vector<report::Figure>& figures) {
+  const core::Truth truth = source.truth();
+  if (!protocol && !truth.places) return;
+  const core::SourceInfo info = source.info();
+  if (protocol) figures.push_back({"data set", protocol->data_set});
+  figures.push_back({"exclusion window", window_text(config, info)});
+  figures.push_back(report::figure("tolerance of the truth", "{} frames",
+                                   std::max(0, config.input.truth_tolerance_frames)));
+  figures.push_back({"truth of places", truth_text(config, info, truth)});
+  if (!protocol) return;
+  const std::vector<std::string> missing = paper::missing_of(*protocol, info, truth);
+  figures.push_back(
+      {"missing", missing.empty() ? "nothing" : fmt::format("{}", fmt::join(missing, "; "))});
+}
+
+void print_source(const pipeline::Config& given) {
+  const bool is_twin = twin::is_twin_spec(given.source);
+  const auto protocol = is_twin ? std::nullopt : paper::protocol_of(given.source);
+  const pipeline::Config config = protocol ? paper::with_protocol(given, *protocol) : given;
   const auto source = run::open_source(config);
   const core::SourceInfo info = source->info();
   const core::Trajectory truth = source->true_trajectory();
-  print_figures({{"format", info.format},
-                 report::figure("frames", "{}", info.num_frames),
-                 report::figure("rate", "{:.2f} Hz", info.frame_rate_hz),
-                 report::figure("cameras", "{}", info.num_cameras),
-                 {"calibration", info.is_calibrated ? "yes" : "none"},
-                 {"depth", info.has_depth ? "yes" : "no"},
-                 {"true poses", truth.empty() ? "none" : fmt::format("{}", truth.size())}});
+  std::vector<report::Figure> figures = {
+      {"format", info.format},
+      report::figure("frames", "{}", info.num_frames),
+      report::figure("rate", "{:.2f} Hz", info.frame_rate_hz),
+      report::figure("cameras", "{}", info.num_cameras),
+      {"calibration", info.is_calibrated ? "yes" : "none"},
+      {"depth", info.has_depth ? "yes" : "no"},
+      {"true poses", truth.empty() ? "none" : fmt::format("{}", truth.size())}};
+  // a rendered building would have to be looked through
+  if (!is_twin) add_truth_of_places(config, protocol ? &*protocol : nullptr, *source, figures);
+  print_figures(figures);
 }
 
 void execute(const std::string& source, const ConfigOptions& options) {
@@ -131,7 +171,9 @@ void add_info_command(CLI::App& app) {
   };
   auto command = std::make_shared<InfoCommand>();
   CLI::App* sub = app.add_subcommand(
-      "info", "What a recording holds: topics, types, rates and gaps of a bag; frames of others");
+      "info",
+      "What a recording holds: topics, types, rates and gaps of a bag; frames and truth of others, "
+      "and what a download of a known data set lacks");
   sub->add_option("SOURCE", command->source, "what `samewhere run` reads")->required();
   add_config_options(*sub, command->config);
   sub->callback([command] { execute(command->source, command->config); });

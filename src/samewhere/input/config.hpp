@@ -15,8 +15,9 @@ struct Config {
   double max_stamp_difference_s = 0.02;
   std::string topics;  // of a bag: "color=/a depth=/b"; empty: found
   bool depth = true;
-  bool enlarge = true;    // pictures of less than 480 x 360 pixels, in SLAM
-  bool realtime = false;  // of a camera, or of a video that is played, the newest frame
+  int truth_tolerance_frames = -1;  // of the matrix of same places; -1: as the protocol says
+  bool enlarge = true;              // pictures of less than 480 x 360 pixels, in SLAM
+  bool realtime = false;            // of a camera, or of a video that is played, the newest frame
   // No setting but the caller's word: whether a calibration that cannot be read ends the run. Where
   // it does not, the recording's own is warned of and left out.
   bool needs_calibration = true;
@@ -54,6 +55,12 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
              "names"});
   visit("depth", config.depth,
         {.help = "depth images are read; false: the recording is treated as monocular"});
+  visit("truth_tolerance_frames", config.truth_tolerance_frames,
+        {.help = "frames by which each row of the matrix of same places is widened; -1: `info` and "
+                 "`bench paper` take it from the protocol of the data set, others 0",
+         .min = -1,
+         .max = 1000,
+         .is_expert = true});
   visit("enlarge", config.enlarge,
         {.help = "`run`: images below 480 x 360 pixels are enlarged to the pixel count of 640 x "
                  "480: corners have whole-pixel coordinates"});

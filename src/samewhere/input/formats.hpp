@@ -56,6 +56,28 @@ std::optional<Recording> find_picture_folders(const std::filesystem::path& folde
 std::optional<Recording> find_colour_and_depth(const std::filesystem::path& folder,
                                                const Config& config);
 
+// color.txt and aligned_depth.txt (lines `stamp filename`), sensors.yaml, groundtruth.txt of
+// base_link, brought to the colour camera by trans_matrix.yaml: a sequence of OpenLORIS-Scene (Shi
+// et al. 2020). Without trans_matrix.yaml there is no trajectory. depth/ is not registered and not
+// read.
+std::optional<Recording> find_open_loris(const std::filesystem::path& folder, const Config& config);
+
+// FRONTAL/FRONTAL_<seconds>.png, camera.txt, *-GROUNDTRUTH.csv (stamp, x, y, theta, covariance) of
+// the robot, or *-GT-extended.csv: Bicocca of Rawseeds (Ceriani et al. 2009).
+std::optional<Recording> find_rawseeds(const std::filesystem::path& folder, const Config& config);
+
+// At least two of day_left/, day_right/ and night_right/, one traverse after another in this order.
+// Pictures of one number show the same place, those within 8 are near;
+// config.truth_tolerance_frames makes those within it the same.
+std::optional<Recording> find_gardens_point(const std::filesystem::path& folder,
+                                            const Config& config);
+
+// Images/*, or pictures in the folder itself, with a published matrix of same places
+// (place_matrix.hpp): Lip6 Indoor and Outdoor (Angeli et al. 2008), one picture a second, and New
+// College and City Centre of FAB-MAP (Cummins and Newman 2008), left and right in turn, without
+// stamps: one a second is assumed.
+std::optional<Recording> find_place_set(const std::filesystem::path& folder, const Config& config);
+
 // A text file with the path of one image a line, relative to the list (list_file.hpp); further
 // columns are ignored. A list carries neither camera nor truth.
 Recording read_image_list(const std::filesystem::path& list, const Config& config);

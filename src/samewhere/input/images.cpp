@@ -56,8 +56,8 @@ std::optional<Recording> find_images(const path& folder, const Config& config) {
 }
 
 std::optional<Recording> find_picture_folders(const path& folder, const Config& config) {
-  const path colour = first_folder(
-      folder, {"rgb", "color", "colour", "image", "images", "rgb_images", "color_images", "RGB"});
+  const path colour = first_folder(folder, {"rgb", "color", "colour", "image", "images", "Images",
+                                            "rgb_images", "color_images", "RGB"});
   if (colour.empty()) return std::nullopt;
   const path depth = depth_folder(folder);
   Recording recording{.format = depth.empty() ? "images" : "colour and depth folders",

@@ -15,6 +15,7 @@
 #include <samewhere/input/formats.hpp>
 #include <samewhere/input/image_file.hpp>
 #include <samewhere/input/open.hpp>
+#include <samewhere/input/place_matrix.hpp>
 #include <samewhere/input/video.hpp>
 
 namespace samewhere::input {
@@ -49,14 +50,19 @@ void check_config(const Config& config) {
       ": holds no known recording; looked for rgb.txt (TUM RGB-D), mav0/ (EuRoC), "
       "image_0/ or image_2/ with times.txt (KITTI), frame-*.color.png or .jpg "
       "(7-Scenes), images/ with depth/, K.txt or poses.txt "
-      "(HoloLens), rgb/ or color/ with depth/, *.jpg, *.jpeg, *.png or other pictures");
+      "(HoloLens), color.txt (OpenLORIS), FRONTAL/ (Rawseeds), day_left/ (GardensPoint), Images/, "
+      "rgb/ or color/ with depth/, *.jpg, *.jpeg, *.png or other pictures");
 }
 
 Recording read_folder(const path& folder, const Config& config) {
   for (const auto& find :
-       {&find_tum_rgbd, &find_euroc, &find_kitti, &find_seven_scenes, &find_hololens,
+       {&find_tum_rgbd, &find_open_loris, &find_euroc, &find_kitti, &find_seven_scenes,
+        &find_rawseeds, &find_gardens_point, &find_place_set, &find_hololens,
         &find_colour_and_depth, &find_images, &find_picture_folders}) {
-    if (std::optional<Recording> recording = find(folder, config)) return *std::move(recording);
+    std::optional<Recording> recording = find(folder, config);
+    if (!recording) continue;
+    add_published_places(folder, config, *recording);
+    return *std::move(recording);
   }
   fail_unknown(folder);
 }

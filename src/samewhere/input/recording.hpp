@@ -32,6 +32,7 @@ struct Recording {
   bool needs_calibration = true;  // else a calibration that does not fit is warned of and left out
   std::vector<core::ImuSample> imu = {};  // stamps rise
   core::Truth truth = {};
+  bool is_place_truth_final = false;  // truth.places is not to be widened: its reader did
 };
 
 // Leaves out all cameras but the first, as where it is not known how they sit to each other.

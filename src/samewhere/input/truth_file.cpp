@@ -21,15 +21,8 @@ namespace samewhere::input {
 namespace {
 
 using core::InputError;
-using core::PlaceTruth;
 using core::PlaceTruthMatrix;
 using std::filesystem::path;
-
-PlaceTruth place_truth(double value, const std::string& place) {
-  if (value == 0.0 || value == 1.0 || value == 2.0) return static_cast<PlaceTruth>(value);
-  throw InputError(fmt::format(
-      "{}: found the value {}, expected 0 (different), 1 (same) or 2 (near)", place, value));
-}
 
 // The next whole number of a PGM header; '#' comments run to the end of their line.
 int header_number(std::istream& in, const path& file) {
@@ -68,7 +61,7 @@ PlaceTruthMatrix read_pgm(const path& file, int num_frames) {
   PlaceTruthMatrix places{num_frames, {}};
   places.values.reserve(num_values);
   for (const char value : values) {
-    places.values.push_back(place_truth(static_cast<unsigned char>(value), file.string()));
+    places.values.push_back(place_truth_of_value(static_cast<unsigned char>(value), file.string()));
   }
   return places;
 }
@@ -86,7 +79,7 @@ PlaceTruthMatrix read_text_matrix(const path& file, int num_frames) {
                                    line.words.size(), lines.size()));
     }
     for (std::size_t column = 0; column < line.words.size(); ++column) {
-      places.values.push_back(place_truth(core::finite_number(line, column), line.place));
+      places.values.push_back(place_truth_of_value(core::finite_number(line, column), line.place));
     }
   }
   return places;
@@ -119,6 +112,12 @@ std::vector<core::FramePair> read_aliased_pairs(const path& file, int num_frames
 }
 
 }  // namespace
+
+core::PlaceTruth place_truth_of_value(double value, const std::string& place) {
+  if (value == 0.0 || value == 1.0 || value == 2.0) return static_cast<core::PlaceTruth>(value);
+  throw InputError(fmt::format(
+      "{}: found the value {}, expected 0 (different), 1 (same) or 2 (near)", place, value));
+}
 
 bool read_if_sound(const char* consequence, const std::function<void()>& read) {
   try {

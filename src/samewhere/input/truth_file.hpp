@@ -11,6 +11,14 @@
 
 namespace samewhere::input {
 
+// The largest matrix of same places that data sets publish and that is read: 20,000 x 20,000 take
+// 400 MB.
+inline constexpr int kMaxPlaceRows = 20'000;
+
+// One value of a matrix of same places. Throws InputError, which begins with `place`, if it is not
+// 0 (different), 1 (same) or 2 (near).
+core::PlaceTruth place_truth_of_value(double value, const std::string& place);
+
 // What lies in the folder under the names that every format shares: the trajectory in
 // groundtruth.tum; which frames show the same place in same_place.pgm (binary PGM) or, without it,
 // same_place.txt (one row of numbers per query), both with 1 = same, 2 = near, 0 = different;

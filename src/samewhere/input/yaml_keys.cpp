@@ -72,6 +72,19 @@ std::vector<std::string> YamlKeys::names() const {
   return names;
 }
 
+std::vector<YamlKeys> YamlKeys::maps(const std::string& key) const {
+  if (!has_list(key)) throw InputError(fmt::format("{}: has no list {}", file_.string(), key));
+  std::vector<YamlKeys> maps;
+  for (const YAML::Node& entry : root_[key]) {
+    if (!entry.IsMap()) {
+      throw InputError(fmt::format("{}, line {}: {}: expected keys and values", file_.string(),
+                                   entry.Mark().line + 1, key));
+    }
+    maps.emplace_back(file_, entry);
+  }
+  return maps;
+}
+
 std::optional<std::string> YamlKeys::first_of(std::initializer_list<const char*> keys) const {
   const auto found = std::find_if(
       keys.begin(), keys.end(), [&](const char* key) { return has(key) && !root_[key].IsNull(); });

@@ -27,6 +27,9 @@ class YamlKeys {
   // What lies under a key that has_map.
   YamlKeys below(const std::string& key) const { return {file_, root_[key]}; }
 
+  // The maps of a list of maps.
+  std::vector<YamlKeys> maps(const std::string& key) const;
+
   // The first of the keys that is there; nothing if none is.
   std::optional<std::string> first_of(std::initializer_list<const char*> keys) const;
 

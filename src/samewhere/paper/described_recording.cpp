@@ -12,8 +12,10 @@
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/paper/described_recording.hpp>
 #include <samewhere/paper/place_truth.hpp>
+#include <samewhere/paper/protocols.hpp>
 #include <samewhere/paper/spread.hpp>
 #include <samewhere/run/open_source.hpp>
+#include <samewhere/twin/front/twin.hpp>
 
 namespace samewhere::paper {
 namespace {
@@ -24,6 +26,10 @@ constexpr std::string_view kTwin = "twin:";
 
 std::string network_name(const std::string& file) {
   return std::filesystem::path(file).stem().string();
+}
+
+std::optional<Protocol> known_protocol(const std::string& source) {
+  return twin::is_twin_spec(source) ? std::nullopt : protocol_of(source);
 }
 
 // A frame whose description is timed at the end.
@@ -91,10 +97,13 @@ pipeline::Config with_source(pipeline::Config config, const std::string& source_
       !window.empty() && window.find_first_not_of("0123456789") == std::string::npos;
   config.source =
       run::absolute_source(is_window ? source_at_window.substr(0, at) : source_at_window);
-  if (!is_window) return config;
+  const auto protocol = known_protocol(config.source);
+  if (!is_window) return protocol ? with_protocol(std::move(config), *protocol) : config;
   if (is_in_seconds) core::set_config(config, "retrieve.window_frames=-1");
   const char* key = is_in_seconds ? "retrieve.window_s=" : "retrieve.window_frames=";
   core::set_config(config, key + window);
+  if (protocol && config.input.truth_tolerance_frames < 0)
+    config.input.truth_tolerance_frames = protocol->tolerance_frames;
   return config;
 }
 

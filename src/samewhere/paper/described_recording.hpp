@@ -31,8 +31,9 @@ inline constexpr const char* kPaperMethod = "paper";
 NamedDescriber make_named_describer(const std::string& word, const pipeline::Config& config);
 
 // The config for "SOURCE", "SOURCE@149" or "SOURCE@10s": a recording or a twin building, and the
-// window of its protocol in frames or seconds, instead of the config's. Throws InputError on a
-// window that is out of range.
+// window of its protocol in frames or seconds, instead of the config's. Without a window, and for
+// the tolerance of its truth, a known data set has those of its protocol (protocols.hpp). Throws
+// InputError on a window that is out of range.
 pipeline::Config with_source(pipeline::Config config, const std::string& source_at_window);
 
 // How tables call the sequence of a config: a folder's name, or what a twin building was asked for.
