@@ -107,7 +107,8 @@ std::string window_text(const pipeline::Config& config, const core::SourceInfo& 
 
 std::string truth_text(const pipeline::Config& config, const core::SourceInfo& info,
                        const core::Truth& truth) {
-  if (!truth.places) return "none";
+  if (!truth.places)
+    return info.has_depth && !truth.trajectory.empty() ? "by depth and poses" : "none";
   const int window_frames = run::with_window_in_frames(config, info).retrieve.window_frames;
   return fmt::format("{} of {} queries have a loop",
                      paper::num_queries_with_loop(*truth.places, window_frames),

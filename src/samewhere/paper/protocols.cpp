@@ -155,6 +155,15 @@ std::size_t row_of(const path& folder) {
   });
 }
 
+// Whether a trajectory lies in the folder.
+bool has_poses(const path& folder) {
+  const std::vector<std::string> names = plain_names(folder);
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    return name == "groundtruthtxt" || name == "groundtruthtum" || name == "posestxt" ||
+           name.ends_with("posetxt");
+  });
+}
+
 using FoundSet = std::pair<std::size_t, path>;  // row of the table
 
 // A data set is not searched for others.
@@ -163,7 +172,8 @@ void search(const path& folder, int levels, std::vector<FoundSet>& found) {
     if (!input::is_folder(folder)) return;
     const std::size_t row = row_of(folder);
     const bool is_known = row < table().size();
-    if (is_known && (table()[row].protocol.has_depth || input::has_place_truth(folder))) {
+    const bool is_by_depth = is_known && table()[row].protocol.has_depth && has_poses(folder);
+    if (is_by_depth || (is_known && input::has_place_truth(folder))) {
       found.emplace_back(row, folder);
       return;
     }

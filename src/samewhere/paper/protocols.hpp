@@ -40,8 +40,9 @@ std::vector<std::string> missing_of(const Protocol& protocol, const core::Source
 int num_queries_with_loop(const core::PlaceTruthMatrix& places, int window_frames);
 
 // All folders in `root`, up to three levels down, that protocol_of knows and that say which of
-// their frames show the same place; in the order of the table, then by path. Folders that cannot be
-// read are passed over. Throws InputError if there is no such folder `root`.
+// their frames show the same place, or have the depth and true poses that tell it; in the order of
+// the table, then by path. Folders that cannot be read are passed over. Throws InputError if there
+// is no such folder `root`.
 std::vector<std::filesystem::path> find_data_sets(const std::filesystem::path& root);
 
 }  // namespace samewhere::paper

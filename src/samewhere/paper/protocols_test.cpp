@@ -104,6 +104,9 @@ TEST_F(Protocols, WhatADownloadLacksIsTold) {
 
 TEST_F(Protocols, DataSetsAreFoundInAFixedOrder) {
   folder_.write("sets/z/hololens/same_place.pgm", "");
+  folder_.write("sets/OpenLORIS/cafe1-1/sensors.yaml", "");
+  folder_.write("sets/OpenLORIS/cafe1-1/color.txt", "");
+  folder_.write("sets/OpenLORIS/cafe1-1/groundtruth.txt", "");  // and depth
   folder_.write("sets/b/rtabmap_corridor/same_place.txt", "0\n");
   folder_.write("sets/NewCollege/masks/NewCollegeGroundTruth.mat", "");
   folder_.write("sets/Lip6Indoor/Images/lip6kennedy_bigdoubleloop_000000.ppm", "");  // no truth
@@ -112,8 +115,9 @@ TEST_F(Protocols, DataSetsAreFoundInAFixedOrder) {
   folder_.write("sets/1/2/3/4/hololens/same_place.pgm", "");  // too deep
   std::filesystem::create_symlink("/nowhere/at/all", folder_.at("sets/dangling"));
   const std::filesystem::path root = folder_.root() / "sets";
-  EXPECT_THAT(find_data_sets(root), ElementsAre(root / "NewCollege", root / "GardensPoint",
-                                                root / "b/rtabmap_corridor", root / "z/hololens"));
+  EXPECT_THAT(find_data_sets(root),
+              ElementsAre(root / "NewCollege", root / "GardensPoint", root / "OpenLORIS/cafe1-1",
+                          root / "b/rtabmap_corridor", root / "z/hololens"));
   EXPECT_THROW(find_data_sets(root / "gone"), core::InputError);
 }
 
