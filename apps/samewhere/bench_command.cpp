@@ -24,6 +24,7 @@
 #include <samewhere/paper/benchmark.hpp>
 #include <samewhere/paper/blind_spot.hpp>
 #include <samewhere/paper/page.hpp>
+#include <samewhere/paper/protocols.hpp>
 #include <samewhere/paper/tables.hpp>
 #include <samewhere/paper/view_pool.hpp>
 
@@ -48,9 +49,17 @@ constexpr std::array<const char*, 4> kTwins = {
     "twin:twin-corridors?seed=1000@10s", "twin:office-loop?seed=1000@10s",
     "twin:second-visit?seed=1000@10s", "twin:mirror?seed=1000@10s"};
 
+// The data sets below SAMEWHERE_DATA, with the windows of their protocols, and the rendered
+// sequences.
 std::vector<std::string> default_sources(bool is_quick) {
   if (is_quick) return {kTwins.begin() + 1, kTwins.begin() + 2};
-  return {kTwins.begin(), kTwins.end()};
+  std::vector<std::string> sources;
+  if (const char* data = std::getenv("SAMEWHERE_DATA")) {
+    for (const std::filesystem::path& folder : paper::find_data_sets(data))
+      sources.push_back(folder.string());
+  }
+  sources.insert(sources.end(), kTwins.begin(), kTwins.end());
+  return sources;
 }
 
 paper::BenchmarkPlan plan_of(const PaperCommand& command) {
