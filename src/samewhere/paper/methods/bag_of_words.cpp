@@ -93,7 +93,7 @@ std::vector<ScoredBag> InvertedFile::search(const BagOfWords& bag, int num_allow
   return shared;
 }
 
-std::vector<ScoredBag> best_of(std::vector<ScoredBag> scored, int count) {
+std::vector<ScoredBag> best_scored(std::vector<ScoredBag> scored, int count) {
   const std::size_t kept = std::min(static_cast<std::size_t>(count), scored.size());
   std::partial_sort(scored.begin(), scored.begin() + static_cast<std::ptrdiff_t>(kept),
                     scored.end(), [](const ScoredBag& a, const ScoredBag& b) {

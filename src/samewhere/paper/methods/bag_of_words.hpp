@@ -65,6 +65,6 @@ class InvertedFile {
 };
 
 // The best first, of equals the older one; not more than `count`.
-std::vector<ScoredBag> best_of(std::vector<ScoredBag> scored, int count);
+std::vector<ScoredBag> best_scored(std::vector<ScoredBag> scored, int count);
 
 }  // namespace samewhere::paper

@@ -48,7 +48,7 @@ TEST(InvertedFile, ScoresAsTheBagsThemselves) {
       EXPECT_NEAR(view.score, score_of(query, other, norm), 1e-12);
       EXPECT_EQ(view.num_shared, view.position == 2 ? 2 : 1);
     }
-    EXPECT_EQ(best_of(found, 1).front().position, 2);
+    EXPECT_EQ(best_scored(found, 1).front().position, 2);
     EXPECT_TRUE(file.search(query, 0).empty());
   }
 }

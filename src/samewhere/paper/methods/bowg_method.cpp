@@ -15,33 +15,33 @@ namespace samewhere::paper {
 namespace {
 
 // The defaults of the published program.
-constexpr int kNumFeatures = 580;  // 300 at full size, half as many at each half size
-constexpr int kNumLevels = 5;
-constexpr double kLevelScale = 2.0;
+constexpr int kBowgFeatures = 580;  // 300 at full size, half as many at each half size
+constexpr int kBowgLevels = 5;
+constexpr double kBowgScale = 2.0;
 constexpr double kFeatureSize_px = 5.0;
 constexpr double kWordWeight = 0.7;
 constexpr double kGroupWeight = 0.3;
 constexpr double kMinOwnScore = 0.005;  // of the query with the view before it
 constexpr double kPoorOwnScore = 10.0;  // in its place where that is lower
 constexpr double kMaxPreviousWeight = 0.5;
-constexpr double kMinSimilarity = 0.4;
+constexpr double kBowgSimilarity = 0.4;
 constexpr int kIslandGapFrames = 3;
 constexpr int kMaxIslandDistanceFrames = 1;
-constexpr int kMinInliers = 30;
-constexpr double kMaxError_px = 7.0;
-constexpr int kRansacIterations = 200;
-constexpr double kMaxRatio = 0.8;
+constexpr int kBowgInliers = 30;
+constexpr double kBowgError_px = 7.0;
+constexpr int kBowgIterations = 200;
+constexpr double kBowgRatio = 0.8;
 
 InlierCheck bowg_check(const pipeline::Config& base) {
   InlierCheck check{.features = features::Config{},
-                    .min_matches = kMinInliers,
-                    .max_error_px = kMaxError_px,
-                    .max_iterations = kRansacIterations,
+                    .min_matches = kBowgInliers,
+                    .max_error_px = kBowgError_px,
+                    .max_iterations = kBowgIterations,
                     .seed = static_cast<std::uint64_t>(base.seed)};
-  check.features.num_features = kNumFeatures;
-  check.features.num_levels = kNumLevels;
-  check.features.scale_factor = kLevelScale;
-  check.features.max_ratio = kMaxRatio;
+  check.features.num_features = kBowgFeatures;
+  check.features.num_levels = kBowgLevels;
+  check.features.scale_factor = kBowgScale;
+  check.features.max_ratio = kBowgRatio;
   return check;
 }
 
@@ -119,15 +119,15 @@ class BowgMethod : public Method {
   }
 
   void judge(const std::vector<ScoredBag>& scored) {
-    const std::vector<ScoredBag> best = best_of(scored, 1);
+    const std::vector<ScoredBag> best = best_scored(scored, 1);
     if (!best.empty())
       findings_.matches.push_back({query(), best.front().position, best.front().score});
-    const auto island = best_island(scored, kMinSimilarity, kIslandGapFrames);
+    const auto island = best_island(scored, kBowgSimilarity, kIslandGapFrames);
     const auto island_before = std::exchange(island_before_, island);
     if (!island || !island_before || !are_near(*island, *island_before, kMaxIslandDistanceFrames))
       return;
     const auto match = static_cast<std::size_t>(island->best.position);
-    if (count_inliers(views_.back(), views_[match], check_) >= kMinInliers)
+    if (count_inliers(views_.back(), views_[match], check_) >= kBowgInliers)
       findings_.accepted.push_back({query(), island->best.position, island->best.score});
   }
 
@@ -136,7 +136,7 @@ class BowgMethod : public Method {
   std::shared_ptr<const features::Vocabulary> vocabulary_;
   InvertedFile words_;
   InvertedFile groups_;
-  WordGroups dictionary_{kFeatureSize_px, kLevelScale};
+  WordGroups dictionary_{kFeatureSize_px, kBowgScale};
   std::vector<features::View> views_;
   Bags before_;
   std::vector<std::optional<double>> previous_;  // the last score of each view

@@ -12,14 +12,14 @@
 namespace samewhere::paper {
 namespace {
 
-constexpr int kNumNearest = 5;
-constexpr int kMinInliers = 20;     // ours: the published figure is set for each recording
-constexpr int kNumConsecutive = 2;  // ours: as above
-constexpr double kMaxRatio = 0.7;
+constexpr int kFildNearest = 5;
+constexpr int kFildInliers = 20;     // ours: the published figure is set for each recording
+constexpr int kFildConsecutive = 2;  // ours: as above
+constexpr double kFildRatio = 0.7;
 
 InlierCheck fild_check(const pipeline::Config& base) {
   InlierCheck check{.features = features::Config{}, .seed = static_cast<std::uint64_t>(base.seed)};
-  check.features.max_ratio = kMaxRatio;
+  check.features.max_ratio = kFildRatio;
   return check;
 }
 
@@ -46,8 +46,8 @@ class FildMethod : public Method {
     const evaluate::Match best = verified_best(query);
     if (best.match < 0) return;
     findings_.matches.push_back(best);
-    num_consecutive_ = best.score >= kMinInliers ? num_consecutive_ + 1 : 0;
-    if (num_consecutive_ >= kNumConsecutive) findings_.accepted.push_back(best);
+    num_consecutive_ = best.score >= kFildInliers ? num_consecutive_ + 1 : 0;
+    if (num_consecutive_ >= kFildConsecutive) findings_.accepted.push_back(best);
   }
 
   Findings findings() override { return std::move(findings_); }
@@ -57,7 +57,7 @@ class FildMethod : public Method {
   evaluate::Match verified_best(int query) const {
     evaluate::Match best{.query = query, .match = -1, .score = -1.0};
     for (const int match :
-         graph_.nearest(descriptors_[static_cast<std::size_t>(query)].unit, kNumNearest)) {
+         graph_.nearest(descriptors_[static_cast<std::size_t>(query)].unit, kFildNearest)) {
       const int num_inliers =
           count_inliers(views_.back(), views_[static_cast<std::size_t>(match)], check_);
       if (num_inliers <= best.score) continue;

@@ -21,6 +21,23 @@ struct KnownMethod {
   MakeMethod make;
 };
 
+constexpr const char* kWordsRan =
+    "1000 ORB, vocabulary of retrieve.vocabulary, tf-idf, L1 score; accepted: more than .8 of the "
+    "most shared words, score summed over ten neighbours in time (for covisible keyframes), "
+    "consistent with three queries before, 20 inliers under a fundamental matrix (for a "
+    "similarity transform of a map), pause of ten frames";
+constexpr const char* kRerankedRan =
+    "the ten best by that score, ranked by inliers under a fundamental matrix; accepted: 20";
+constexpr const char* kFildRan =
+    "the describer of describe.method (for a ResNet-50), five nearest in a small-world graph of "
+    "hnswlib, 1000 ORB (for DELF) with a ratio test of .7, ranked by inliers under a fundamental "
+    "matrix; accepted: 20 in two queries in a row (both ours)";
+constexpr const char* kBowgRan =
+    "580 ORB at five levels (for FAST and BRIEF), words of retrieve.vocabulary .7 and word groups "
+    ".3, mixed with the score of the query before, no distribution of features (its published "
+    "weight is 0); accepted: score .4, near the island of the query before, 30 inliers under a "
+    "fundamental matrix";
+
 pipeline::Config recognition_config(const pipeline::Config& base) {
   pipeline::Config config = pipeline::profile("recognition");
   config.source = base.source;
@@ -39,28 +56,10 @@ const std::vector<KnownMethod>& registry() {
        [](const pipeline::Config& base) {
          return make_recognition_method(recognition_config(base));
        }},
-      {{"words", "bag of words (ORB-SLAM2)",
-        "1000 ORB, vocabulary of retrieve.vocabulary, tf-idf, L1 score; accepted: shared words "
-        "above "
-        "0.8 of the most, score summed over ten neighbours in time (for covisible keyframes), "
-        "consistent with three queries before, 20 inliers under a fundamental matrix (for a "
-        "similarity transform of a map), pause of ten frames"},
-       make_words_method},
-      {{"words-geometry", "bag of words + inliers",
-        "the ten best by that score, ranked by inliers under a fundamental matrix; accepted: 20"},
-       make_words_geometry_method},
-      {{"fild", "FILD++",
-        "the describer of describe.method (for a ResNet-50), five nearest in a small-world graph "
-        "of "
-        "hnswlib, 1000 ORB (for DELF) with a ratio test of 0.7, ranked by inliers under a "
-        "fundamental matrix; accepted: 20 in two queries in a row (both ours)"},
-       make_fild_method},
-      {{"bowg", "BoWG",
-        "580 ORB at five levels (for FAST and BRIEF), words of retrieve.vocabulary 0.7 and word "
-        "groups 0.3, mixed with the score of the query before, no distribution of features (its "
-        "published weight is 0); accepted: score 0.4, near the island of the query before, 30 "
-        "inliers under a fundamental matrix"},
-       make_bowg_method},
+      {{"words", "bag of words (ORB-SLAM2)", kWordsRan}, make_words_method},
+      {{"words-geometry", "bag of words + inliers", kRerankedRan}, make_words_geometry_method},
+      {{"fild", "FILD++", kFildRan}, make_fild_method},
+      {{"bowg", "BoWG", kBowgRan}, make_bowg_method},
   };
   return methods;
 }

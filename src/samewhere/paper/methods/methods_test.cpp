@@ -20,9 +20,8 @@ struct Laps {
 const Laps& laps() {
   static const Laps once = [] {
     cv::setNumThreads(1);
-    std::vector<OpenRecording> open = open_recordings(
-        {with_source(pipeline::profile("default"), "twin:office-loop?seed=21&speed=4@10s")});
-    OpenRecording& recording = open.front();
+    OpenRecording recording = open_recording(
+        with_source(pipeline::profile("default"), "twin:office-loop?seed=21&speed=4@10s"));
     Laps all{.config = recording.config, .places = *recording.truth.places, .frames = {}};
     while (auto frame = recording.source->next()) all.frames.push_back(std::move(*frame));
     return all;
@@ -36,9 +35,9 @@ Findings findings_of(const std::string& name) {
   return method->findings();
 }
 
-class ComparedMethod : public testing::TestWithParam<const char*> {};
+class EachMethod : public testing::TestWithParam<const char*> {};
 
-TEST_P(ComparedMethod, FindsLoopsOfAWalkThatReturnsAndTheSameEachTime) {
+TEST_P(EachMethod, FindsLoopsOfAWalkThatReturnsAndTheSameEachTime) {
   if (GetParam() == std::string("fild") && !NeighbourGraph::is_built_in())
     GTEST_SKIP() << "built without hnswlib";
   const Findings found = findings_of(GetParam());
@@ -63,7 +62,7 @@ TEST_P(ComparedMethod, FindsLoopsOfAWalkThatReturnsAndTheSameEachTime) {
   expect_equal(found.accepted, again.accepted);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ComparedMethod,
+INSTANTIATE_TEST_SUITE_P(Methods, EachMethod,
                          testing::Values("words", "words-geometry", "fild", "bowg"));
 
 TEST(ComparedMethods, AreKnownByTheirNames) {

@@ -4,19 +4,15 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/paper/methods/neighbour_graph.hpp>
 
-// Debian's package libhnswlib-dev has headers alone.
-#if __has_include(<hnswlib/hnswlib.h>)
+#ifdef SAMEWHERE_HNSWLIB
 #include <hnswlib/hnswlib.h>
-#define SAMEWHERE_HAS_HNSWLIB 1
-#else
-#define SAMEWHERE_HAS_HNSWLIB 0
 #endif
 
 namespace samewhere::paper {
 
-bool NeighbourGraph::is_built_in() { return SAMEWHERE_HAS_HNSWLIB != 0; }
+#ifdef SAMEWHERE_HNSWLIB
 
-#if SAMEWHERE_HAS_HNSWLIB
+bool NeighbourGraph::is_built_in() { return true; }
 
 struct NeighbourGraph::Graph {
   Graph(std::size_t length, std::size_t capacity, const Settings& settings)
@@ -57,6 +53,8 @@ std::vector<int> NeighbourGraph::nearest(std::span<const float> unit, int count)
 }
 
 #else
+
+bool NeighbourGraph::is_built_in() { return false; }
 
 struct NeighbourGraph::Graph {};
 

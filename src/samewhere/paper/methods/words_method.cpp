@@ -13,21 +13,21 @@
 namespace samewhere::paper {
 namespace {
 
-constexpr int kNumFeatures = 1000;
+constexpr int kOrbSlamFeatures = 1000;
 constexpr double kMinSharedRatio = 0.8;        // of the largest number of shared words
 constexpr double kMinAccumulatedRatio = 0.75;  // of the largest accumulated score
 constexpr int kNeighbourFrames = 5;            // to either side: ten, as ORB-SLAM2 takes keyframes
 constexpr int kNumConsistent = 3;              // queries before that agree
-constexpr int kMinInliers = 20;
-constexpr int kPauseFrames = 10;  // after a loop
+constexpr int kOrbSlamInliers = 20;
+constexpr int kOrbSlamPauseFrames = 10;  // after a loop
 constexpr int kNumReranked = 10;
 
 // ORB-SLAM2 matches words of loops within 50 bits and with a ratio of 0.75.
 InlierCheck words_check(const pipeline::Config& base) {
   InlierCheck check{.features = features::Config{},
-                    .min_matches = kMinInliers,
+                    .min_matches = kOrbSlamInliers,
                     .seed = static_cast<std::uint64_t>(base.seed)};
-  check.features.num_features = kNumFeatures;
+  check.features.num_features = kOrbSlamFeatures;
   check.features.max_distance_bits = 50;
   check.features.max_ratio = 0.75;
   return check;
@@ -80,15 +80,15 @@ class OrbSlamWords : public WordsMethod {
 
  private:
   void judge(const std::vector<ScoredBag>& scored) override {
-    const std::vector<ScoredBag> best = best_of(scored, 1);
+    const std::vector<ScoredBag> best = best_scored(scored, 1);
     if (!best.empty()) {
       findings_.matches.push_back({query(), best.front().position, best.front().score});
     }
     if (query() < pause_end_) return;
     for (const ScoredBag& candidate : consistency_.consistent_of(candidates_of(scored))) {
-      if (inliers_of(candidate.position) < kMinInliers) continue;
+      if (inliers_of(candidate.position) < kOrbSlamInliers) continue;
       findings_.accepted.push_back({query(), candidate.position, candidate.score});
-      pause_end_ = query() + kPauseFrames;
+      pause_end_ = query() + kOrbSlamPauseFrames;
       return;
     }
   }
@@ -136,7 +136,7 @@ class OrbSlamWords : public WordsMethod {
       if (is_new && group.accumulated > kMinAccumulatedRatio * most)
         candidates.push_back(group.best);
     }
-    return best_of(candidates, static_cast<int>(candidates.size()));
+    return best_scored(candidates, static_cast<int>(candidates.size()));
   }
 
   Consistency consistency_{2 * kNeighbourFrames, kNumConsistent};
@@ -150,7 +150,7 @@ class RerankedWords : public WordsMethod {
  private:
   void judge(const std::vector<ScoredBag>& scored) override {
     evaluate::Match best{.query = query(), .match = -1, .score = -1.0};
-    for (const ScoredBag& candidate : best_of(scored, kNumReranked)) {
+    for (const ScoredBag& candidate : best_scored(scored, kNumReranked)) {
       const int num_inliers = inliers_of(candidate.position);
       if (num_inliers <= best.score) continue;
       best.match = candidate.position;
@@ -158,7 +158,7 @@ class RerankedWords : public WordsMethod {
     }
     if (best.match < 0) return;
     findings_.matches.push_back(best);
-    if (best.score >= kMinInliers) findings_.accepted.push_back(best);
+    if (best.score >= kOrbSlamInliers) findings_.accepted.push_back(best);
   }
 };
 
