@@ -27,7 +27,7 @@ constexpr const char* kHeadExamples =
     "Examples:\n"
     "  samewhere train head gem --images photos 'twin:hotel?seed=7' --validate "
     "'twin:office-loop?seed=21' --out mine.onnx\n"
-    "then: samewhere bench paper SOURCE --describers hog,mine.onnx";
+    "then: samewhere bench paper SOURCE --tables 4 --methods hog,mine.onnx";
 
 std::vector<HeadSource> read_sources(const HeadJob& job, const std::vector<std::string>& names,
                                      network::Trunk& trunk) {
