@@ -14,7 +14,7 @@ namespace {
 using Path = std::filesystem::path;
 
 constexpr int kMaxBranching = 100;
-constexpr int kMaxDepth = 20;
+constexpr int kMaxDbow2Depth = 20;
 constexpr std::string_view kBlanks = " \t\r";
 
 // Takes a number from the beginning of the text, with blanks before it.
@@ -52,7 +52,7 @@ bool take_descriptor(std::string_view& text, ForeignNode& node) {
 
 bool set_limits(ForeignTree& tree, std::optional<int> branching, std::optional<int> depth) {
   if (!branching || *branching < 2 || *branching > kMaxBranching) return false;
-  if (!depth || *depth < 1 || *depth > kMaxDepth) return false;
+  if (!depth || *depth < 1 || *depth > kMaxDbow2Depth) return false;
   tree.max_children = static_cast<std::uint32_t>(*branching);
   tree.max_depth = static_cast<std::uint32_t>(*depth);
   return true;
@@ -61,7 +61,7 @@ bool set_limits(ForeignTree& tree, std::optional<int> branching, std::optional<i
 [[noreturn]] void refuse_limits(const Path& path) {
   refuse_vocabulary(path, fmt::format("is a DBoW2 vocabulary of another branching or depth; "
                                       "expected k from 2 to {} and L from 1 to {}",
-                                      kMaxBranching, kMaxDepth));
+                                      kMaxBranching, kMaxDbow2Depth));
 }
 
 // A line "parent is_word 32 bytes weight".

@@ -14,7 +14,7 @@ static_assert(std::endian::native == std::endian::little, "the file is read as m
 constexpr std::uint64_t kSignature = 55824124;
 constexpr std::uint32_t kWordBit = 0x8000'0000U;
 constexpr std::uint32_t kMaxChildren = 1000;
-constexpr std::uint32_t kMaxDepth = 32;
+constexpr std::uint32_t kMaxFbowDepth = 32;
 constexpr std::size_t kBlocksBegin = 128;
 constexpr std::size_t kChildBytes = 8;
 
@@ -112,7 +112,7 @@ ForeignTree read_fbow(std::string_view bytes, const std::filesystem::path& path)
   const Layout layout = layout_of(bytes, path);
   ForeignTree tree{.nodes = std::vector<ForeignNode>(1),
                    .max_children = static_cast<std::uint32_t>(layout.branching),
-                   .max_depth = kMaxDepth};
+                   .max_depth = kMaxFbowDepth};
   std::vector<char> is_read(layout.num_blocks, 0);
   std::vector<OpenBlock> open{{0, 0}};
   for (std::size_t next = 0; next < open.size(); ++next) {
