@@ -38,7 +38,7 @@ struct FreeVariable {
 using Mat = std::unique_ptr<mat_t, CloseMat>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
-std::uint32_t number_at(std::string_view bytes, std::size_t at, bool is_little) {
+std::uint32_t value_at(std::string_view bytes, std::size_t at, bool is_little) {
   std::uint32_t number = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const auto byte = static_cast<unsigned char>(bytes[at + (is_little ? 3 - i : i)]);
@@ -77,7 +77,7 @@ void require_sound_matrix(std::string_view bytes, bool is_little, const path& fi
   constexpr std::uint32_t kMostSmall_bytes = 4;
   constexpr std::size_t kFlags_bytes = 16;
   if (bytes.size() < kFlags_bytes) fail_damaged(file);
-  const std::uint32_t variable_class = number_at(bytes, kTag_bytes, is_little) & 0xffU;
+  const std::uint32_t variable_class = value_at(bytes, kTag_bytes, is_little) & 0xffU;
   if (variable_class < MAT_C_CHAR || variable_class > MAT_C_UINT64) {
     throw InputError(fmt::format("{}: holds a variable of class {}, expected matrices only",
                                  file.string(), variable_class));
@@ -85,9 +85,9 @@ void require_sound_matrix(std::string_view bytes, bool is_little, const path& fi
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
     if (left < kTag_bytes) fail_damaged(file);
-    const std::uint32_t type = number_at(bytes, at, is_little);
+    const std::uint32_t type = value_at(bytes, at, is_little);
     const bool is_small = type >> 16U != 0;
-    const std::size_t size = is_small ? type >> 16U : number_at(bytes, at + 4, is_little);
+    const std::size_t size = is_small ? type >> 16U : value_at(bytes, at + 4, is_little);
     if (is_small ? size > kMostSmall_bytes : size > left - kTag_bytes) fail_damaged(file);
     at += kTag_bytes + (is_small ? 0 : (size + 7) / 8 * 8);
   }
@@ -98,10 +98,10 @@ void require_sound_element(std::string_view bytes, std::uint32_t type, bool is_l
   if (type == MAT_T_MATRIX) return require_sound_matrix(bytes, is_little, file);
   const std::string whole = inflated(bytes, file);
   const std::string_view inner(whole);
-  if (number_at(inner, 0, is_little) != MAT_T_MATRIX ||
-      number_at(inner, 4, is_little) > inner.size() - kTag_bytes)
+  if (value_at(inner, 0, is_little) != MAT_T_MATRIX ||
+      value_at(inner, 4, is_little) > inner.size() - kTag_bytes)
     fail_damaged(file);
-  require_sound_matrix(inner.substr(kTag_bytes, number_at(inner, 4, is_little)), is_little, file);
+  require_sound_matrix(inner.substr(kTag_bytes, value_at(inner, 4, is_little)), is_little, file);
 }
 
 // libmatio takes what is missing at the end of a file for zeros, and reads version 7.3 by HDF5.
@@ -119,12 +119,12 @@ void require_whole_version_5(const path& file) {
   }
   for (std::size_t at = kHeader_bytes; at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
-    const std::size_t size = left < kTag_bytes ? left : number_at(bytes, at + 4, is_little);
+    const std::size_t size = left < kTag_bytes ? left : value_at(bytes, at + 4, is_little);
     if (left < kTag_bytes || size > left - kTag_bytes) {
       throw InputError(fmt::format("{}: is cut short or damaged: found {} bytes at {}, expected {}",
                                    file.string(), left, at, size + kTag_bytes));
     }
-    const std::uint32_t type = number_at(bytes, at, is_little);
+    const std::uint32_t type = value_at(bytes, at, is_little);
     if (type != MAT_T_MATRIX && type != MAT_T_COMPRESSED) {
       throw InputError(
           fmt::format("{}: is damaged: found an element of type {} at {}, expected a matrix",

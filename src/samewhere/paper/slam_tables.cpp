@@ -14,7 +14,7 @@ namespace {
 // The columns of the published tables: its own method, ORB-SLAM2.
 constexpr std::array<const char*, 2> kPublishedSystems = {"paper", "usual"};
 
-using FigureOf = std::function<double(const SlamRow&)>;
+using SlamFigure = std::function<double(const SlamRow&)>;
 
 std::vector<const SlamRow*> rows_of(const Results& results, const std::string& recording,
                                     const std::string& configuration) {
@@ -25,7 +25,8 @@ std::vector<const SlamRow*> rows_of(const Results& results, const std::string& r
   return rows;
 }
 
-std::string cell(const std::vector<const SlamRow*>& rows, const FigureOf& figure, int num_digits) {
+std::string cell(const std::vector<const SlamRow*>& rows, const SlamFigure& figure,
+                 int num_digits) {
   std::vector<double> values;
   for (const SlamRow* row : rows) values.push_back(figure(*row));
   return mean_cell(values, num_digits);

@@ -13,7 +13,7 @@ namespace samewhere::train {
 namespace {
 
 constexpr double kMaxHeadError = 1e-3;
-constexpr int kNumChecked = 8;
+constexpr int kNumCheckedViews = 8;
 
 OrderedJson input_of(const network::TrunkSpec& spec, const network::Trunk& trunk) {
   return {{"trunk", spec.file},
@@ -49,7 +49,7 @@ void require_same(const HeadJob& job, const std::string& bytes, const TrainedHea
   const auto exported = network::make_inference(network::parse_network(job.out, bytes));
   HeadNetwork head(job.kind, source.shape, job.config);
   head.restore(trained.weights);
-  for (int i = 0; i < std::min(kNumChecked, source.num_views()); ++i) {
+  for (int i = 0; i < std::min(kNumCheckedViews, source.num_views()); ++i) {
     cv::Mat map;
     source.maps[static_cast<std::size_t>(i)].convertTo(map, CV_32F);
     const std::vector<float> wanted = head.codes({map.ptr<float>(), map.total()});
