@@ -249,8 +249,10 @@ TEST_F(Training, WritesTheNetworkThatWasBestOrNone) {
     Trainer trainer(config, images_, checkpoint, "abc");
     write_network(job, images_, trainer);
   };
-  EXPECT_THROW(write_after([](Checkpoint& c) { c.best_parameters[0] += 0.01F; }),
-               core::ContractError);
+  const auto change_biases = [](Checkpoint& c) {  // of the last layer's ten channels
+    for (int i = 1; i <= 10; ++i) *(c.best_parameters.end() - i) += 0.1F;
+  };
+  EXPECT_THROW(write_after(change_biases), core::ContractError);
   EXPECT_THROW(write_after([](Checkpoint& c) { c.best_codes[0] = NAN; }), core::ContractError);
   EXPECT_THAT(
       complaint([&] { write_after([](Checkpoint& c) { c.best_parameters[0] = INFINITY; }); }),
