@@ -135,9 +135,9 @@ class ForeignFiles : public testing::Test {
     stream.next_out = reinterpret_cast<Bytef*>(out.data());
     stream.avail_out = static_cast<uInt>(out.size());
     deflate(&stream, Z_FINISH);
-    out.resize(out.size() - stream.avail_out);
+    const std::size_t num_bytes = out.size() - stream.avail_out;
     deflateEnd(&stream);
-    return out;
+    return out.substr(0, num_bytes);
   }
 
   Vocabulary load(const std::string& bytes) const {
