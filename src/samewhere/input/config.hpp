@@ -23,6 +23,23 @@ struct Config {
   bool needs_calibration = true;
 };
 
+inline void visit_images(Config& config, core::FieldVisitor& visit) {
+  visit("depth", config.depth,
+        {.help = "depth images are read; false: the recording is treated as monocular"});
+  visit("truth_tolerance_frames", config.truth_tolerance_frames,
+        {.help = "frames by which each row of the matrix of same places is widened; -1: `info` and "
+                 "`bench paper` take it from the protocol of the data set, others 0",
+         .min = -1,
+         .max = 1000,
+         .is_expert = true});
+  visit("enlarge", config.enlarge,
+        {.help = "`run`: images below 480 x 360 pixels are enlarged to the pixel count of 640 x "
+                 "480: corners have whole-pixel coordinates"});
+  visit("realtime", config.realtime,
+        {.help = "camera or video at its own pace: the newest frame is used, the others are "
+                 "dropped; not reproducible"});
+}
+
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit("camera", config.camera,
         {.help = "camera file that replaces the recording's own; empty: the recording's own"});
@@ -53,20 +70,7 @@ inline void visit_fields(Config& config, core::FieldVisitor& visit) {
         {.help =
              "topics of a bag by their roles, `color=/a depth=/b`; empty: found by their types and "
              "names"});
-  visit("depth", config.depth,
-        {.help = "depth images are read; false: the recording is treated as monocular"});
-  visit("truth_tolerance_frames", config.truth_tolerance_frames,
-        {.help = "frames by which each row of the matrix of same places is widened; -1: `info` and "
-                 "`bench paper` take it from the protocol of the data set, others 0",
-         .min = -1,
-         .max = 1000,
-         .is_expert = true});
-  visit("enlarge", config.enlarge,
-        {.help = "`run`: images below 480 x 360 pixels are enlarged to the pixel count of 640 x "
-                 "480: corners have whole-pixel coordinates"});
-  visit("realtime", config.realtime,
-        {.help = "camera or video at its own pace: the newest frame is used, the others are "
-                 "dropped; not reproducible"});
+  visit_images(config, visit);
 }
 
 }  // namespace samewhere::input

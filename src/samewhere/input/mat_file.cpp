@@ -150,6 +150,21 @@ std::string shape_text(const matvar_t& variable) {
                      variable.dims[0], variable.dims[1]);
 }
 
+bool is_truth(const matvar_t& variable) {
+  return is_square(variable) && variable.name != nullptr &&
+         std::string_view(variable.name) == "truth";
+}
+
+[[noreturn]] void fail_choice(bool are_several, const std::vector<std::string>& shapes,
+                              const path& file) {
+  const std::string found = shapes.empty() ? "none" : fmt::format("{}", fmt::join(shapes, ", "));
+  throw InputError(
+      are_several
+          ? fmt::format("{}: holds several square matrices: {}; expected one, or truth",
+                        file.string(), found)
+          : fmt::format("{}: holds no square matrix of numbers; found {}", file.string(), found));
+}
+
 // Without its values.
 Variable find_matrix(mat_t* mat, const path& file) {
   constexpr int kMostVariables = 1000;
@@ -159,20 +174,14 @@ Variable find_matrix(mat_t* mat, const path& file) {
     Variable variable(Mat_VarReadNextInfo(mat));
     if (!variable) break;
     if (!is_matrix_of_numbers(*variable)) continue;
-    const bool is_truth = variable->name != nullptr && std::string_view(variable->name) == "truth";
-    if (is_truth && is_square(*variable)) return variable;
+    if (is_truth(*variable)) return variable;
     if (shapes.size() < 10) shapes.push_back(shape_text(*variable));
     if (!is_square(*variable)) continue;
-    if (found) {
-      throw InputError(fmt::format("{}: holds several square matrices: {}; expected one, or truth",
-                                   file.string(), fmt::join(shapes, ", ")));
-    }
+    if (found) fail_choice(true, shapes, file);
     found = std::move(variable);
   }
-  if (found) return found;
-  throw InputError(
-      fmt::format("{}: holds no square matrix of numbers; found {}", file.string(),
-                  shapes.empty() ? "none" : fmt::format("{}", fmt::join(shapes, ", "))));
+  if (!found) fail_choice(false, shapes, file);
+  return found;
 }
 
 void check_size(const matvar_t& variable, const path& file) {

@@ -177,16 +177,23 @@ bool begins_as_matrix(const path& file) {
   return !line.empty() && line.find_first_not_of("012 \t,;") == std::string_view::npos;
 }
 
+// Empty: there is none.
+path matrix_in(const path& place, const char* ending) {
+  if (!is_folder(place)) return {};
+  for (const std::string& name : sorted_names(place)) {
+    if (!is_matrix_name(name, ending) || is_folder(place / name)) continue;
+    if (name.ends_with(".mat") || begins_as_matrix(place / name)) return place / name;
+  }
+  return {};
+}
+
 }  // namespace
 
 path published_matrix(const path& folder) {
   for (const char* const ending : {".txt", ".mat"}) {
     for (const path& place : {folder, folder / "masks"}) {
-      if (!is_folder(place)) continue;
-      for (const std::string& name : sorted_names(place)) {
-        if (!is_matrix_name(name, ending) || is_folder(place / name)) continue;
-        if (name.ends_with(".mat") || begins_as_matrix(place / name)) return place / name;
-      }
+      const path found = matrix_in(place, ending);
+      if (!found.empty()) return found;
     }
   }
   return {};

@@ -29,9 +29,11 @@ struct Row {
 };
 
 // The one table of protocols; docs/data.md repeats it for readers.
-const std::vector<Row>& table() {
-  constexpr const char* kOwn = "same_place.pgm, or depth and true poses";
-  static const std::vector<Row> rows{
+constexpr const char* kOwn = "same_place.pgm, or depth and true poses";
+
+// With a published matrix, or names that say it.
+std::vector<Row> place_sets() {
+  return {
       {{.data_set = "Lip6 Indoor",
         .window_s = 30.0,
         .tolerance_frames = 10,
@@ -59,6 +61,12 @@ const std::vector<Row>& table() {
         .num_images = 600,
         .place_file = "day_left/, day_right/ and night_right/"},
        {.names = {"gardenspoint"}, .entries = {"dayright"}}},
+  };
+}
+
+// With depth and true poses.
+std::vector<Row> slam_sets() {
+  return {
       {{.data_set = "TUM fr3/long_office_household",
         .window_s = 10.0,
         .has_depth = true,
@@ -71,6 +79,12 @@ const std::vector<Row>& table() {
         .place_file = kOwn,
         .pose_file = "groundtruth.txt with trans_matrix.yaml"},
        {.names = {"openloris"}, .entries = {"colortxt", "sensorsyaml"}}},
+  };
+}
+
+// Single recordings.
+std::vector<Row> recordings() {
+  return {
       {{.data_set = "rtabmap_corridor",
         .window_frames = 19,
         .num_images = 84,
@@ -91,6 +105,15 @@ const std::vector<Row>& table() {
         .pose_file = "poses.txt"},
        {.is_whole_name = true, .names = {"hololens"}}},
   };
+}
+
+const std::vector<Row>& table() {
+  static const std::vector<Row> rows = [] {
+    std::vector<Row> all = place_sets();
+    for (const auto& part : {slam_sets(), recordings()})
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
   return rows;
 }
 

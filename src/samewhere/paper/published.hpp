@@ -11,8 +11,8 @@ inline constexpr int kPublishedDrawsOfUse = 50;  // L with which the method is u
 
 // A method of Tables 4 and 5: how the tables call it, and its row among ours.
 struct PublishedMethod {
-  const char* title;
-  const char* ours;  // as --methods has it
+  const char* title = "";
+  const char* ours = "";  // as --methods has it
 };
 
 inline constexpr std::array<PublishedMethod, 7> kPublishedMethods = {{{"published method", "paper"},
@@ -32,15 +32,15 @@ struct PublishedError {
 };
 
 struct PublishedSequence {
-  const char* name;
-  std::array<double, 7> auc_by_draws;   // Table 2
-  std::array<double, 7> ms_by_draws;    // Table 3
-  std::array<double, 7> auc_by_method;  // Table 4, as kPublishedMethods
-  std::array<double, 7> ms_by_method;   // Table 5
+  const char* name = "";
+  std::array<double, 7> auc_by_draws{};   // Table 2
+  std::array<double, 7> ms_by_draws{};    // Table 3
+  std::array<double, 7> auc_by_method{};  // Table 4, as kPublishedMethods
+  std::array<double, 7> ms_by_method{};   // Table 5
   // Tables 6 to 8: of the published method, of ORB-SLAM2
-  std::array<const char*, 2> loops;  // right/wrong
-  std::array<PublishedError, 2> error_m;
-  std::array<double, 2> frames_per_second;
+  std::array<const char*, 2> loops{};  // right/wrong
+  std::array<PublishedError, 2> error_m{};
+  std::array<double, 2> frames_per_second{};
 };
 
 inline constexpr std::array<PublishedSequence, 3> kPublishedSequences = {{
@@ -73,8 +73,8 @@ inline constexpr std::array<PublishedSequence, 3> kPublishedSequences = {{
 // Recall and precision that its text names: full precision up to a recall of about .35; at .70
 // above .80 on Lip6 and Bicocca, above .75 on fr3_loh.
 struct PublishedPoint {
-  double recall;
-  double precision;
+  double recall = 0.0;
+  double precision = 0.0;
 };
 
 inline constexpr std::array<PublishedPoint, 3> kPublishedPoints = {

@@ -82,18 +82,29 @@ std::string published_by_draws(const std::array<double, 7>& figures, const std::
   return "";
 }
 
-PaperTable table_by_draws(const Results& results, int number, const char* title,
-                          const FigureOf& figure,
-                          const std::array<double, 7> PublishedSequence::*published,
-                          int num_digits) {
-  PaperTable table{.number = number, .title = title, .header = {"draws L"}, .rows = {}, .note = {}};
+// What a table is of.
+struct Content {
+  int number = 0;
+  const char* title = "";
+  FigureOf figure;
+  int num_digits = 0;
+  const std::array<double, 7> PublishedSequence::*published = nullptr;  // none: it has none
+};
+
+PaperTable table_by_draws(const Results& results, const Content& content) {
+  PaperTable table{.number = content.number,
+                   .title = content.title,
+                   .header = {"draws L"},
+                   .rows = {},
+                   .note = {}};
   const std::vector<Column> columns = columns_by_draws(results);
   for (const Column& column : columns) table.header.push_back(column.header);
-  add_rows(table, results, columns, figure, num_digits);
+  add_rows(table, results, columns, content.figure, content.num_digits);
   for (const PublishedSequence& sequence : kPublishedSequences) {
     PaperTable::Row row{{fmt::format("published, {}", sequence.name)}, true};
     for (const Column& column : columns)
-      row.cells.push_back(published_by_draws(sequence.*published, column.header, num_digits));
+      row.cells.push_back(
+          published_by_draws(sequence.*content.published, column.header, content.num_digits));
     table.rows.push_back(row);
   }
   return table;
@@ -132,25 +143,28 @@ std::string published_by_method(const Results& results, const std::array<double,
   return "";
 }
 
-PaperTable table_by_method(const Results& results, int number, const char* title, bool is_exact,
-                           const FigureOf& figure, int num_digits) {
-  PaperTable table{.number = number, .title = title, .header = {"method"}, .rows = {}, .note = {}};
-  const std::vector<Column> columns = columns_by_method(results, is_exact);
-  for (const Column& column : columns) table.header.push_back(column.header);
-  add_rows(table, results, columns, figure, num_digits);
-  return table;
-}
-
-void add_published(PaperTable& table, const Results& results,
-                   const std::array<double, 7> PublishedSequence::*figures, int num_digits) {
+void add_published(PaperTable& table, const Results& results, const Content& content) {
   for (const PublishedSequence& sequence : kPublishedSequences) {
     PaperTable::Row row{{fmt::format("published, {}", sequence.name)}, true};
     for (std::size_t i = 1; i < table.header.size(); ++i) {
-      row.cells.push_back(
-          published_by_method(results, sequence.*figures, table.header[i], num_digits));
+      row.cells.push_back(published_by_method(results, sequence.*content.published, table.header[i],
+                                              content.num_digits));
     }
     table.rows.push_back(row);
   }
+}
+
+PaperTable table_by_method(const Results& results, bool is_exact, const Content& content) {
+  PaperTable table{.number = content.number,
+                   .title = content.title,
+                   .header = {"method"},
+                   .rows = {},
+                   .note = {}};
+  const std::vector<Column> columns = columns_by_method(results, is_exact);
+  for (const Column& column : columns) table.header.push_back(column.header);
+  add_rows(table, results, columns, content.figure, content.num_digits);
+  if (content.published != nullptr) add_published(table, results, content);
+  return table;
 }
 
 std::string loops_cell(const Results& results, const std::string& recording,
@@ -210,24 +224,28 @@ constexpr const char* kMethodsNote =
 
 std::vector<PaperTable> recognition_tables(const Results& results) {
   std::vector<PaperTable> tables;
-  tables.push_back(table_by_draws(results, 2, "AUC by number of draws", auc_of,
-                                  &PublishedSequence::auc_by_draws, 4));
-  tables.back().note = kDrawsNote;
-  tables.push_back(table_by_draws(results, 3, "milliseconds a frame by number of draws", ms_of,
-                                  &PublishedSequence::ms_by_draws, 2));
-  tables.back().note =
-      "Median on one core, without reading the image; the published ones with a graphics card.";
-  tables.push_back(table_by_method(results, 4, "AUC by method", false, auc_of, 4));
-  add_published(tables.back(), results, &PublishedSequence::auc_by_method, 4);
-  tables.back().note = kMethodsNote;
-  tables.push_back(
-      table_by_method(results, 4, "recall at 100 % precision by method", false, full_recall_of, 4));
-  tables.back().note = kMethodsNote;
-  tables.push_back(table_by_method(results, 4, "AUC by method, exact search", true, auc_of, 4));
-  tables.back().note = "Descriptors alone: every earlier image is compared.";
-  tables.push_back(table_by_method(results, 5, "milliseconds a frame by method", false, ms_of, 2));
-  add_published(tables.back(), results, &PublishedSequence::ms_by_method, 2);
-  tables.back().note = "Median on one core, without reading the image.";
+  const auto add = [&](PaperTable table, const char* note) {
+    table.note = note;
+    tables.push_back(std::move(table));
+  };
+  add(table_by_draws(results,
+                     {2, "AUC by number of draws", auc_of, 4, &PublishedSequence::auc_by_draws}),
+      kDrawsNote);
+  add(table_by_draws(results, {3, "milliseconds a frame by number of draws", ms_of, 2,
+                               &PublishedSequence::ms_by_draws}),
+      "Median on one core, without reading the image; the published ones with a graphics card.");
+  add(table_by_method(results, false,
+                      {4, "AUC by method", auc_of, 4, &PublishedSequence::auc_by_method}),
+      kMethodsNote);
+  add(table_by_method(results, false,
+                      {4, "recall at 100 % precision by method", full_recall_of, 4}),
+      kMethodsNote);
+  add(table_by_method(results, true, {4, "AUC by method, exact search", auc_of, 4}),
+      "Descriptors alone: every earlier image is compared.");
+  add(table_by_method(
+          results, false,
+          {5, "milliseconds a frame by method", ms_of, 2, &PublishedSequence::ms_by_method}),
+      "Median on one core, without reading the image.");
   tables.push_back(table_of_recognized_loops(results));
   return tables;
 }

@@ -110,25 +110,31 @@ class OrbSlamWords : public WordsMethod {
     return accumulated_best(scored, min_score());
   }
 
+  // A candidate with its neighbours in time.
+  struct Group {
+    double accumulated = 0.0;
+    ScoredBag best;
+  };
+
+  static Group group_of(const ScoredBag& centre, const std::vector<ScoredBag>& scored) {
+    Group group{.accumulated = 0.0, .best = centre};
+    for (const ScoredBag& other : scored) {
+      if (std::abs(other.position - centre.position) > kNeighbourFrames) continue;
+      group.accumulated += other.score;
+      if (other.score > group.best.score) group.best = other;
+    }
+    return group;
+  }
+
   // Of each candidate's neighbourhood the best, where that scores nearly as well as the best one.
   static std::vector<ScoredBag> accumulated_best(const std::vector<ScoredBag>& scored,
                                                  double min_score) {
-    struct Group {
-      double accumulated = 0.0;
-      ScoredBag best;
-    };
     std::vector<Group> groups;
     double most = min_score;
     for (const ScoredBag& centre : scored) {
       if (centre.score < min_score) continue;
-      Group group{.accumulated = 0.0, .best = centre};
-      for (const ScoredBag& other : scored) {
-        if (std::abs(other.position - centre.position) > kNeighbourFrames) continue;
-        group.accumulated += other.score;
-        if (other.score > group.best.score) group.best = other;
-      }
-      most = std::max(most, group.accumulated);
-      groups.push_back(group);
+      groups.push_back(group_of(centre, scored));
+      most = std::max(most, groups.back().accumulated);
     }
     std::vector<ScoredBag> candidates;
     for (const Group& group : groups) {
