@@ -208,8 +208,7 @@ void add_options(CLI::App& sub, PaperCommand& command) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   sub.add_flag("--quick", command.is_quick,
-               "one rendered sequence unless some are named, two seeds, one run of SLAM: ten "
-               "minutes");
+               "one rendered sequence unless some are named, two seeds, one run of SLAM");
   sub.add_flag("--fresh", command.is_fresh,
                "measure anew what an earlier run left in the folder's rows");
   sub.add_option("--blind-spot", command.blind_spot_views,
