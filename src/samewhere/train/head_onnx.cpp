@@ -14,13 +14,20 @@ void add_power(onnx::GraphProto& graph, Chain& chain, const std::string& name, f
   chain.add("Pow", name).add_input(name + "_exponent");
 }
 
+// One linear layer, the same at every position.
+struct PositionLayer {
+  int outputs = 0;
+  int inputs = 0;
+  const std::vector<float>& weights;  // outputs x inputs
+  const std::vector<float>& biases;   // outputs
+};
+
 void add_position_layer(onnx::GraphProto& graph, Chain& chain, const std::string& name,
-                        const std::array<std::int64_t, 2>& sizes, const std::vector<float>& weights,
-                        const std::vector<float>& biases) {
-  const std::array<std::int64_t, 4> shape{sizes[0], sizes[1], 1, 1};
-  const std::array<std::int64_t, 1> length{sizes[0]};
-  add_tensor(graph, name + "_weights", shape, weights);
-  add_tensor(graph, name + "_biases", length, biases);
+                        const PositionLayer& layer) {
+  const std::array<std::int64_t, 4> shape{layer.outputs, layer.inputs, 1, 1};
+  const std::array<std::int64_t, 1> length{layer.outputs};
+  add_tensor(graph, name + "_weights", shape, layer.weights);
+  add_tensor(graph, name + "_biases", length, layer.biases);
   onnx::NodeProto& node = chain.add("Conv", name);
   node.add_input(name + "_weights");
   node.add_input(name + "_biases");
@@ -44,7 +51,7 @@ void add_shared_centres(onnx::GraphProto& graph, Chain& chain, const HeadWeights
   std::vector<float> centres = head.centres;
   for (float& number : centres) number *= num_positions;
   chain.add("GlobalAveragePool", "mean_share");
-  const std::array<std::int64_t, 4> shape{head.clusters * head.reduced, 1, 1, 1};
+  const std::array<std::int64_t, 4> shape{std::int64_t{head.clusters} * head.reduced, 1, 1, 1};
   add_tensor(graph, "centre_weights", shape, centres);
   onnx::NodeProto& node = chain.add("Conv", "centre");
   node.add_input("centre_weights");
@@ -56,12 +63,12 @@ void add_shared_centres(onnx::GraphProto& graph, Chain& chain, const HeadWeights
 
 std::string add_vlad(onnx::GraphProto& graph, Chain& chain, const HeadWeights& head) {
   const std::int64_t num_positions = std::int64_t{head.shape.rows} * head.shape.columns;
-  add_position_layer(graph, chain, "reduced", {head.reduced, head.shape.channels},
-                     head.reduce_weights, head.reduce_biases);
+  add_position_layer(graph, chain, "reduced",
+                     {head.reduced, head.shape.channels, head.reduce_weights, head.reduce_biases});
   add_response_norm(chain, "local", head.reduced, kNetvladFloor);
   Chain shares(graph, "local");
-  add_position_layer(graph, shares, "assigned", {head.clusters, head.reduced}, head.assign_weights,
-                     head.assign_biases);
+  add_position_layer(graph, shares, "assigned",
+                     {head.clusters, head.reduced, head.assign_weights, head.assign_biases});
   add_whole_number(shares.add("Softmax", "share"), "axis", 1);
   Chain centres(graph, "share");
   add_shared_centres(graph, centres, head);
