@@ -1,5 +1,5 @@
-# SAMEWHERE_MERGED, for the presets that ./run test builds: the sources of a folder are compiled several at a time, and headers that
-# nearly every file includes once. It halves the building time. The other presets leave it out, so that a file which
+# SAMEWHERE_MERGED, for all presets but those to work with: the sources of a folder are compiled several at a time, and headers that
+# nearly every file includes once. It halves the building time. The others leave it out, so that a file which
 # forgets an #include fails there; a name that two files of a folder define for themselves fails here.
 #
 # samewhere_merge(TARGET): a library or program.
