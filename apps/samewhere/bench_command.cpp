@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -44,24 +43,6 @@ struct PaperCommand {
   ConfigOptions config{.profile = "paper", .file = "", .assignments = {}};
 };
 
-// The rendered sequences that are measured where none is named.
-constexpr std::array<const char*, 4> kTwins = {
-    "twin:twin-corridors?seed=1000@10s", "twin:office-loop?seed=1000@10s",
-    "twin:second-visit?seed=1000@10s", "twin:mirror?seed=1000@10s"};
-
-// The data sets below SAMEWHERE_DATA, with the windows of their protocols, and the rendered
-// sequences.
-std::vector<std::string> default_sources(bool is_quick) {
-  if (is_quick) return {kTwins.begin() + 1, kTwins.begin() + 2};
-  std::vector<std::string> sources;
-  if (const char* data = std::getenv("SAMEWHERE_DATA")) {
-    for (const std::filesystem::path& folder : paper::find_data_sets(data))
-      sources.push_back(folder.string());
-  }
-  sources.insert(sources.end(), kTwins.begin(), kTwins.end());
-  return sources;
-}
-
 paper::BenchmarkPlan plan_of(const PaperCommand& command) {
   paper::BenchmarkPlan plan{.config = load(command.config),
                             .sources = command.sources,
@@ -71,7 +52,11 @@ paper::BenchmarkPlan plan_of(const PaperCommand& command) {
                             .tables = paper::parse_table_numbers(command.tables),
                             .searches = {},
                             .num_slam_runs = command.num_slam_runs};
-  if (plan.sources.empty()) plan.sources = default_sources(command.is_quick);
+  if (plan.sources.empty()) {
+    const char* const data = std::getenv("SAMEWHERE_DATA");
+    plan.sources = command.is_quick ? std::vector{paper::quick_source()}
+                                    : paper::default_sources(data ? data : "");
+  }
   if (plan.methods.empty()) plan.methods = paper::all_methods();
   plan.searches.num_seeds = command.num_seeds;
   if (!command.is_quick) return plan;

@@ -90,28 +90,6 @@ core::StampedPose pose_of(const core::TextLine& line) {
   return {core::finite_number(line, 0), world_from_robot * robot_from_frontal()};
 }
 
-core::Trajectory read_plane_trajectory(const path& file) {
-  core::Trajectory trajectory;
-  read_if_sound("the run goes on without this ground truth", [&] {
-    std::vector<core::TextLine> lines = read_csv_lines(file);
-    core::drop_column_names(lines);
-    core::Trajectory poses;
-    std::vector<std::string> places;
-    LeftOut left_out;
-    for (const core::TextLine& line : lines) {
-      try {
-        poses.push_back(pose_of(line));
-        places.push_back(line.place);
-      } catch (const InputError& error) {
-        left_out.add(error.what());
-      }
-    }
-    trajectory = in_order(std::move(poses), places, left_out);
-    left_out.warn(lines.size(), "poses of the ground truth");
-  });
-  return trajectory;
-}
-
 }  // namespace
 
 std::optional<Recording> find_rawseeds(const path& folder, const Config& /*config*/) {
@@ -122,7 +100,7 @@ std::optional<Recording> find_rawseeds(const path& folder, const Config& /*confi
   if (is_there(folder / "camera.txt")) recording.camera_file = folder / "camera.txt";
   recording.truth = read_truth(folder, static_cast<int>(recording.frames.size()));
   if (const path truth = truth_of(folder); !truth.empty())
-    recording.truth.trajectory = read_plane_trajectory(truth);
+    recording.truth.trajectory = read_true_trajectory(truth, {read_csv_lines, pose_of});
   return recording;
 }
 

@@ -15,6 +15,7 @@
 #include <samewhere/core/tum_file.hpp>
 #include <samewhere/input/csv_file.hpp>
 #include <samewhere/input/file_names.hpp>
+#include <samewhere/input/left_out.hpp>
 #include <samewhere/input/truth_file.hpp>
 
 namespace samewhere::input {
@@ -111,24 +112,8 @@ std::vector<core::FramePair> read_aliased_pairs(const path& file, int num_frames
   return pairs;
 }
 
-}  // namespace
-
-core::PlaceTruth place_truth_of_value(double value, const std::string& place) {
-  if (value == 0.0 || value == 1.0 || value == 2.0) return static_cast<core::PlaceTruth>(value);
-  throw InputError(fmt::format(
-      "{}: found the value {}, expected 0 (different), 1 (same) or 2 (near)", place, value));
-}
-
-bool read_if_sound(const char* consequence, const std::function<void()>& read) {
-  try {
-    read();
-    return true;
-  } catch (const InputError& error) {
-    spdlog::warn("{}; {}", error.what(), consequence);
-    return false;
-  }
-}
-
+// Puts poses in the order of their stamps and leaves out those whose stamp an earlier one has.
+// `places` are the lines they come from, for messages.
 core::Trajectory in_order(core::Trajectory poses, const std::vector<std::string>& places,
                           LeftOut& left_out) {
   std::vector<std::size_t> order(poses.size());
@@ -148,17 +133,39 @@ core::Trajectory in_order(core::Trajectory poses, const std::vector<std::string>
   return sorted;
 }
 
+}  // namespace
+
+core::PlaceTruth place_truth_of_value(double value, const std::string& place) {
+  if (value == 0.0 || value == 1.0 || value == 2.0) return static_cast<core::PlaceTruth>(value);
+  throw InputError(fmt::format(
+      "{}: found the value {}, expected 0 (different), 1 (same) or 2 (near)", place, value));
+}
+
+bool read_if_sound(const char* consequence, const std::function<void()>& read) {
+  try {
+    read();
+    return true;
+  } catch (const InputError& error) {
+    spdlog::warn("{}; {}", error.what(), consequence);
+    return false;
+  }
+}
+
 core::Trajectory read_true_trajectory(const path& file) {
+  return read_true_trajectory(file, {core::read_text_lines, core::tum_pose});
+}
+
+core::Trajectory read_true_trajectory(const path& file, const TrajectoryFormat& format) {
   core::Trajectory trajectory;
   read_if_sound("the run goes on without this ground truth", [&] {
-    std::vector<core::TextLine> lines = core::read_text_lines(file);
+    std::vector<core::TextLine> lines = format.read_lines(file);
     core::drop_column_names(lines);
     core::Trajectory poses;
     std::vector<std::string> places;
     LeftOut left_out;
     for (const core::TextLine& line : lines) {
       try {
-        poses.push_back(core::tum_pose(line));
+        poses.push_back(format.pose_of(line));
         places.push_back(line.place);
       } catch (const InputError& error) {
         left_out.add(error.what());

@@ -7,7 +7,6 @@
 
 #include <samewhere/core/text_file.hpp>
 #include <samewhere/core/truth.hpp>
-#include <samewhere/input/left_out.hpp>
 
 namespace samewhere::input {
 
@@ -32,10 +31,14 @@ core::Truth read_truth(const std::filesystem::path& folder, int num_frames);
 // out, counted and warned of; rows out of order are sorted. Never throws for what is in the file.
 core::Trajectory read_true_trajectory(const std::filesystem::path& file);
 
-// Puts poses in the order of their stamps and leaves out those whose stamp an earlier one has.
-// `places` are the lines they come from, for messages.
-core::Trajectory in_order(core::Trajectory poses, const std::vector<std::string>& places,
-                          LeftOut& left_out);
+// The same of a file of another kind.
+struct TrajectoryFormat {
+  std::vector<core::TextLine> (*read_lines)(const std::filesystem::path& file);
+  // Throws InputError for a line that holds no pose.
+  core::StampedPose (*pose_of)(const core::TextLine& line);
+};
+core::Trajectory read_true_trajectory(const std::filesystem::path& file,
+                                      const TrajectoryFormat& format);
 
 // Calls `read`; what it throws as InputError is warned of, with what follows from it ("is not
 // used"), and false returned.

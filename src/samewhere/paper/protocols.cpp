@@ -208,6 +208,11 @@ void search(const path& folder, int levels, std::vector<FoundSet>& found) {
   }
 }
 
+// Of a seed from 1000 on, which nothing was tuned on, with a window of ten seconds.
+std::string rendered_source(const char* preset) {
+  return fmt::format("twin:{}?seed=1000@10s", preset);
+}
+
 }  // namespace
 
 std::optional<Protocol> protocol_of(const path& folder) {
@@ -264,5 +269,17 @@ std::vector<path> find_data_sets(const path& root) {
   for (FoundSet& each : found) folders.push_back(std::move(each.second));
   return folders;
 }
+
+std::vector<std::string> default_sources(const path& root) {
+  std::vector<std::string> sources;
+  if (!root.empty()) {
+    for (const path& folder : find_data_sets(root)) sources.push_back(folder.string());
+  }
+  for (const char* const preset : {"twin-corridors", "office-loop", "second-visit", "mirror"})
+    sources.push_back(rendered_source(preset));
+  return sources;
+}
+
+std::string quick_source() { return rendered_source("office-loop"); }
 
 }  // namespace samewhere::paper

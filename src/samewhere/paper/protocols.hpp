@@ -45,4 +45,11 @@ int num_queries_with_loop(const core::PlaceTruthMatrix& places, int window_frame
 // is no such folder `root`.
 std::vector<std::filesystem::path> find_data_sets(const std::filesystem::path& root);
 
+// What is measured where no source is named: the data sets in `root` (empty: none), then four
+// rendered sequences, each with the window of its protocol. Throws as find_data_sets.
+std::vector<std::string> default_sources(const std::filesystem::path& root);
+
+// The rendered sequence that a quick run measures.
+std::string quick_source();
+
 }  // namespace samewhere::paper

@@ -121,5 +121,15 @@ TEST_F(Protocols, DataSetsAreFoundInAFixedOrder) {
   EXPECT_THROW(find_data_sets(root / "gone"), core::InputError);
 }
 
+TEST_F(Protocols, WithoutASourceTheDataSetsAndFourRenderedSequencesAreMeasured) {
+  folder_.write("sets/rtabmap_corridor/same_place.txt", "0\n");
+  const std::vector<std::string> sources = default_sources(folder_.root() / "sets");
+  ASSERT_EQ(sources.size(), 5u);
+  EXPECT_EQ(sources.front(), folder_.at("sets/rtabmap_corridor").string());
+  EXPECT_EQ(sources[1], "twin:twin-corridors?seed=1000@10s");
+  EXPECT_EQ(default_sources("").size(), 4u);
+  EXPECT_THAT(default_sources(""), testing::Contains(quick_source()));
+}
+
 }  // namespace
 }  // namespace samewhere::paper
