@@ -22,12 +22,17 @@ constexpr int kOrbSlamInliers = 20;
 constexpr int kOrbSlamPauseFrames = 10;  // after a loop
 constexpr int kNumReranked = 10;
 
-// ORB-SLAM2 matches words of loops within 50 bits and with a ratio of 0.75.
-InlierCheck words_check(const pipeline::Config& base) {
-  InlierCheck check{.features = features::Config{},
-                    .min_matches = kOrbSlamInliers,
-                    .seed = static_cast<std::uint64_t>(base.seed)};
+// Few matches rank, too.
+InlierCheck ranking_check(const pipeline::Config& base) {
+  InlierCheck check{.features = features::Config{}, .seed = static_cast<std::uint64_t>(base.seed)};
   check.features.num_features = kOrbSlamFeatures;
+  return check;
+}
+
+// ORB-SLAM2 matches words of loops within 50 bits and with a ratio of 0.75.
+InlierCheck orb_slam_check(const pipeline::Config& base) {
+  InlierCheck check = ranking_check(base);
+  check.min_matches = kOrbSlamInliers;
   check.features.max_distance_bits = 50;
   check.features.max_ratio = 0.75;
   return check;
@@ -36,9 +41,9 @@ InlierCheck words_check(const pipeline::Config& base) {
 // The views of a sequence and the score of each query with those outside the window.
 class WordsMethod : public Method {
  public:
-  explicit WordsMethod(const pipeline::Config& base)
+  WordsMethod(const pipeline::Config& base, InlierCheck check)
       : window_frames_(base.retrieve.window_frames),
-        check_(words_check(base)),
+        check_(std::move(check)),
         vocabulary_(vocabulary_of(base)),
         file_(vocabulary_->num_words(), BagNorm::kL1) {
     core::require(window_frames_ >= 0, "the window is in frames");
@@ -76,7 +81,7 @@ class WordsMethod : public Method {
 
 class OrbSlamWords : public WordsMethod {
  public:
-  using WordsMethod::WordsMethod;
+  explicit OrbSlamWords(const pipeline::Config& base) : WordsMethod(base, orb_slam_check(base)) {}
 
  private:
   void judge(const std::vector<ScoredBag>& scored) override {
@@ -151,7 +156,7 @@ class OrbSlamWords : public WordsMethod {
 
 class RerankedWords : public WordsMethod {
  public:
-  using WordsMethod::WordsMethod;
+  explicit RerankedWords(const pipeline::Config& base) : WordsMethod(base, ranking_check(base)) {}
 
  private:
   void judge(const std::vector<ScoredBag>& scored) override {
