@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
 #include <fmt/format.h>
 
 #include <samewhere/paper/page.hpp>
@@ -26,7 +30,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2rem .7rem; text-align: right; white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 thead th { border-bottom: 2px solid currentColor; }
-tr.published { color: #767676; }
+.published { color: #767676; font-weight: normal; }
 td.words { white-space: normal; text-align: left; }
 p.note, figcaption { color: #767676; }
 figure { margin: 2rem 0; }
@@ -38,8 +42,8 @@ code { overflow-wrap: anywhere; }
 <body>
 <h1>The published method and others</h1>
 <p>Tables and figures of “Accurate localization of indoor high similarity scenes using visual SLAM combined with loop
-closure detection algorithm” (PLoS ONE, doi 10.1371/journal.pone.0312358) on the sequences named in the rows. Grey: what the
-paper reports of its own sequences, not measured here.</p>
+closure detection algorithm” (PLoS ONE, doi 10.1371/journal.pone.0312358) on other sequences. Grey: what the
+paper reports of its own, not measured here. Bold: the best of a sequence.</p>
 <p>Made by <code>{{command}}</code></p>
 {{tables}}
 {{figures}}
@@ -52,18 +56,62 @@ paper reports of its own sequences, not measured here.</p>
 </html>
 )";
 
-std::string row_html(const PaperTable::Row& row) {
-  std::string html = row.is_published ? "<tr class=\"published\">" : "<tr>";
-  for (const std::string& cell : row.cells) html += fmt::format("<td>{}</td>", escaped(cell));
-  return html + "</tr>\n";
+// What a cell begins with; nothing if that is no figure.
+std::optional<double> figure_of(const std::string& cell) {
+  double figure = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), figure);
+  return error == std::errc{} ? std::optional(figure) : std::nullopt;
 }
 
+constexpr const char* kPublishedClass = " class=\"published\"";
+
+// The largest figure of a column; nothing if it has none.
+std::optional<double> best_of(const PaperTable& table, std::size_t column) {
+  std::optional<double> best;
+  for (const PaperTable::Row& row : table.rows) {
+    if (const auto figure = figure_of(row.cells[column]))
+      best = std::max(best.value_or(*figure), *figure);
+  }
+  return best;
+}
+
+// A cell of each column, in words or in figures.
+class ColumnsHtml {
+ public:
+  explicit ColumnsHtml(const PaperTable& table)
+      : first_published_(table.header.size() -
+                         static_cast<std::size_t>(table.num_published_columns)) {
+    for (std::size_t column = 0; column < table.header.size(); ++column) {
+      const bool is_compared = table.is_more_better && column > 0 && column < first_published_;
+      best_.push_back(is_compared ? best_of(table, column) : std::nullopt);
+    }
+  }
+
+  std::string cell(std::size_t column, const std::string& text, const char* tag) const {
+    const bool is_best = best_[column] && figure_of(text) == best_[column];
+    return fmt::format("<{0}{1}>{2}{3}{4}</{0}>", tag,
+                       column < first_published_ ? "" : kPublishedClass, is_best ? "<b>" : "",
+                       escaped(text), is_best ? "</b>" : "");
+  }
+
+ private:
+  std::size_t first_published_;
+  std::vector<std::optional<double>> best_;
+};
+
 std::string table_html(const PaperTable& table) {
+  const ColumnsHtml columns(table);
   std::string html = fmt::format("<h2>Table {}: {}</h2>\n<div class=\"wide\"><table><thead><tr>",
                                  table.number, escaped(table.title));
-  for (const std::string& cell : table.header) html += fmt::format("<th>{}</th>", escaped(cell));
+  for (std::size_t column = 0; column < table.header.size(); ++column)
+    html += columns.cell(column, table.header[column], "th");
   html += "</tr></thead><tbody>\n";
-  for (const PaperTable::Row& row : table.rows) html += row_html(row);
+  for (const PaperTable::Row& row : table.rows) {
+    html += fmt::format("<tr{}>", row.is_published ? kPublishedClass : "");
+    for (std::size_t column = 0; column < row.cells.size(); ++column)
+      html += columns.cell(column, row.cells[column], "td");
+    html += "</tr>\n";
+  }
   return html +
          fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n", escaped(table.note));
 }

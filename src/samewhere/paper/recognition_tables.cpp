@@ -89,6 +89,7 @@ struct Content {
   FigureOf figure;
   int num_digits = 0;
   const std::array<double, 7> PublishedSequence::*published = nullptr;  // none: it has none
+  bool is_more_better = false;
 };
 
 PaperTable table_by_draws(const Results& results, const Content& content) {
@@ -96,7 +97,8 @@ PaperTable table_by_draws(const Results& results, const Content& content) {
                    .title = content.title,
                    .header = {"draws L"},
                    .rows = {},
-                   .note = {}};
+                   .note = {},
+                   .is_more_better = content.is_more_better};
   const std::vector<Column> columns = columns_by_draws(results);
   for (const Column& column : columns) table.header.push_back(column.header);
   add_rows(table, results, columns, content.figure, content.num_digits);
@@ -159,7 +161,8 @@ PaperTable table_by_method(const Results& results, bool is_exact, const Content&
                    .title = content.title,
                    .header = {"method"},
                    .rows = {},
-                   .note = {}};
+                   .note = {},
+                   .is_more_better = content.is_more_better};
   const std::vector<Column> columns = columns_by_method(results, is_exact);
   for (const Column& column : columns) table.header.push_back(column.header);
   add_rows(table, results, columns, content.figure, content.num_digits);
@@ -228,19 +231,19 @@ std::vector<PaperTable> recognition_tables(const Results& results) {
     table.note = note;
     tables.push_back(std::move(table));
   };
-  add(table_by_draws(results,
-                     {2, "AUC by number of draws", auc_of, 4, &PublishedSequence::auc_by_draws}),
+  add(table_by_draws(results, {2, "AUC by number of draws", auc_of, 4,
+                               &PublishedSequence::auc_by_draws, true}),
       kDrawsNote);
   add(table_by_draws(results, {3, "milliseconds a frame by number of draws", ms_of, 2,
                                &PublishedSequence::ms_by_draws}),
       "Median on one core, without reading the image; the published ones with a graphics card.");
   add(table_by_method(results, false,
-                      {4, "AUC by method", auc_of, 4, &PublishedSequence::auc_by_method}),
+                      {4, "AUC by method", auc_of, 4, &PublishedSequence::auc_by_method, true}),
       kMethodsNote);
   add(table_by_method(results, false,
-                      {4, "recall at 100 % precision by method", full_recall_of, 4}),
+                      {4, "recall at 100 % precision by method", full_recall_of, 4, nullptr, true}),
       kMethodsNote);
-  add(table_by_method(results, true, {4, "AUC by method, exact search", auc_of, 4}),
+  add(table_by_method(results, true, {4, "AUC by method, exact search", auc_of, 4, nullptr, true}),
       "Descriptors alone: every earlier image is compared.");
   add(table_by_method(
           results, false,

@@ -32,6 +32,25 @@ std::pair<int, int> span_of(const std::string& word, const std::string& list) {
   return {word.front() - '0', word.back() - '0'};
 }
 
+constexpr int kTableOfErrors = 7;
+
+// The rows become columns: there are more methods than sequences.
+PaperTable transposed(PaperTable table) {
+  std::vector<std::string> header{table.header.front()};
+  std::vector<PaperTable::Row> rows;
+  for (std::size_t column = 1; column < table.header.size(); ++column)
+    rows.push_back({{table.header[column]}, false});
+  for (const PaperTable::Row& row : table.rows) {
+    header.push_back(row.cells.front());
+    for (std::size_t column = 1; column < row.cells.size(); ++column)
+      rows[column - 1].cells.push_back(row.cells[column]);
+    table.num_published_columns += row.is_published ? 1 : 0;
+  }
+  table.header = std::move(header);
+  table.rows = std::move(rows);
+  return table;
+}
+
 }  // namespace
 
 PaperTableNumbers parse_table_numbers(const std::string& list) {
@@ -57,6 +76,9 @@ std::vector<PaperTable> make_tables(const Results& results, const PaperTableNumb
            std::all_of(table.rows.begin(), table.rows.end(),
                        [](const PaperTable::Row& row) { return row.is_published; });
   });
+  for (PaperTable& table : tables) {
+    if (table.number != kTableOfErrors) table = transposed(std::move(table));
+  }
   return tables;
 }
 

@@ -26,11 +26,14 @@ struct PaperTable {
   std::string title;
   std::vector<std::string> header;
   std::vector<Row> rows;
-  std::string note;  // what the columns are, in sentences
+  std::string note;               // what the columns are, in sentences
+  int num_published_columns = 0;  // the last ones, by the paper, of its own sequences
+  bool is_more_better = false;    // the largest figure of a column leads
 };
 
-// Those of the wanted tables that have a row, ours above the published ones: means over the seeds,
-// and the standard deviation behind them where there are several.
+// Those of the wanted tables that have a row: means over the seeds, and the standard deviation
+// behind them where there are several. The sequences are columns, ours before the published ones;
+// in the table of trajectory errors they are rows.
 std::vector<PaperTable> make_tables(const Results& results, const PaperTableNumbers& numbers);
 
 // For the terminal.

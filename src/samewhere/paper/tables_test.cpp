@@ -21,52 +21,62 @@ using Cells = std::vector<std::string>;
 const PaperTableNumbers kAll{2, 3, 4, 5, 6, 7, 8};
 
 // The cells of the first row with this name of the first table with this title.
-Cells row_of(const std::vector<PaperTable>& tables, const std::string& title,
-             const std::string& name) {
+Cells cells_of(const std::vector<PaperTable>& tables, const std::string& title,
+               const std::string& name) {
   for (const PaperTable& table : tables) {
     if (table.title != title) continue;
+    const auto column = std::find(table.header.begin(), table.header.end(), name);
+    Cells cells;
     for (const PaperTable::Row& row : table.rows) {
       if (row.cells.front() == name) return {row.cells.begin() + 1, row.cells.end()};
+      if (column != table.header.end())
+        cells.push_back(row.cells[static_cast<std::size_t>(column - table.header.begin())]);
     }
+    if (!cells.empty()) return cells;
   }
   ADD_FAILURE() << title << ", " << name;
   return {};
 }
 
-TEST(PaperTables, TableTwoHasAColumnForEachNumberOfDraws) {
+TEST(PaperTables, TableTwoHasARowForEachNumberOfDraws) {
   const auto tables = make_tables(made_up_results(), {2});
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_THAT(tables.front().header, ElementsAre("draws L", "50", "all", "exact"));
-  EXPECT_EQ(row_of(tables, "AUC by number of draws", "hall <1>"),
+  const PaperTable& table = tables.front();
+  EXPECT_THAT(table.header, ElementsAre("draws L", "hall <1>", "published, TUM fr3_loh",
+                                        "published, Lip6 Indoor", "published, Bicocca Indoor"));
+  EXPECT_EQ(table.num_published_columns, 3);
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(table.rows.front().cells.front(), "50");
+  EXPECT_EQ(cells_of(tables, "AUC by number of draws", "hall <1>"),
             (Cells{"0.7500 ± 0.0707", "-", "0.8500"}));
-  EXPECT_EQ(row_of(tables, "AUC by number of draws", "published, Lip6 Indoor"),
+  EXPECT_EQ(cells_of(tables, "AUC by number of draws", "published, Lip6 Indoor"),
             (Cells{"0.8321", "", ""}));
 }
 
 TEST(PaperTables, MethodsStandBesideTheSearchThatThePaperUses) {
   const auto tables = make_tables(made_up_results(), kAll);
-  EXPECT_EQ(row_of(tables, "AUC by method", "hall <1>"), (Cells{"0.7500 ± 0.0707", "0.9500"}));
-  EXPECT_EQ(row_of(tables, "AUC by method", "published, TUM fr3_loh"), (Cells{"0.8221", ""}));
-  EXPECT_EQ(row_of(tables, "AUC by method, exact search", "hall <1>"), Cells{"0.8500"});
-  EXPECT_EQ(row_of(tables, "milliseconds a frame by method", "hall <1>"),
+  EXPECT_EQ(cells_of(tables, "AUC by method", "hall <1>"), (Cells{"0.7500 ± 0.0707", "0.9500"}));
+  EXPECT_EQ(cells_of(tables, "AUC by method", "published, TUM fr3_loh"), (Cells{"0.8221", ""}));
+  EXPECT_EQ(cells_of(tables, "AUC by method, exact search", "hall <1>"), Cells{"0.8500"});
+  EXPECT_EQ(cells_of(tables, "milliseconds a frame by method", "hall <1>"),
             (Cells{"12.50 ± 0.00", "12.50"}));
   const char* alone = "loops right/wrong, by recognition alone";
-  EXPECT_EQ(row_of(tables, alone, "hall <1>"), (Cells{"4.0 ± 0.0 / 1.0 ± 0.0", "6/0"}));
-  EXPECT_EQ(row_of(tables, alone, "all, first seed"),
+  EXPECT_EQ(cells_of(tables, alone, "hall <1>"), (Cells{"4.0 ± 0.0 / 1.0 ± 0.0", "6/0"}));
+  EXPECT_EQ(cells_of(tables, alone, "all, first seed"),
             (Cells{"1 of 5 false (20.0 %)", "0 of 6 false, at most 50.0 % at 95 %"}));
 }
 
 TEST(PaperTables, SlamHasLoopsErrorsAndRates) {
   const auto tables = make_tables(made_up_results(), kAll);
-  EXPECT_EQ(row_of(tables, "loops right/wrong in SLAM", "hall <1>"),
+  EXPECT_EQ(cells_of(tables, "loops right/wrong in SLAM", "hall <1>"),
             (Cells{"3.0 ± 0.0 / 2.0 ± 0.0", "3.0 ± 0.0 / 0.0 ± 0.0"}));
-  EXPECT_EQ(row_of(tables, "loops right/wrong in SLAM", "published, Bicocca Indoor"),
+  EXPECT_EQ(cells_of(tables, "loops right/wrong in SLAM", "published, Bicocca Indoor"),
             (Cells{"25/16", ""}))
       << "ORB-SLAM2 closes loops by bag of words";
-  EXPECT_EQ(row_of(tables, "absolute trajectory error, m", "hall <1>, bag of words"),
+  EXPECT_EQ(cells_of(tables, "absolute trajectory error, m", "hall <1>, bag of words"),
             (Cells{"6.0000 ± 2.8284", "0.0100 ± 0.0000", "2.7000 ± 1.2728", "3.0000 ± 1.4142",
                    "95.0 ± 0.0"}));
-  EXPECT_EQ(row_of(tables, "frames per second", "hall <1>"), (Cells{"40.0 ± 0.0", "40.0 ± 0.0"}));
+  EXPECT_EQ(cells_of(tables, "frames per second", "hall <1>"), (Cells{"40.0 ± 0.0", "40.0 ± 0.0"}));
 }
 
 TEST(PaperTables, WithoutARowThereIsNoTable) {
@@ -125,7 +135,10 @@ TEST(PaperPage, HoldsTablesFiguresAndWhatIsMissing) {
   const std::string page =
       page_html(results, make_tables(results, kAll), {{"Figure 3: curves", "<svg/>"}}, "bench <x>");
   EXPECT_THAT(page, HasSubstr("<h2>Table 2: AUC by number of draws</h2>"));
-  EXPECT_THAT(page, HasSubstr("<tr class=\"published\"><td>published, Lip6 Indoor</td>"));
+  EXPECT_THAT(page, HasSubstr("<th class=\"published\">published, Lip6 Indoor</th>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"published\">0.8321</td>"));
+  EXPECT_THAT(page, HasSubstr("<td><b>0.9500</b></td>")) << "the best of a sequence is bold";
+  EXPECT_THAT(page, Not(HasSubstr("<b>0.7500")));
   EXPECT_THAT(page, HasSubstr("hall &lt;1&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("hall <1>")));
   EXPECT_THAT(page, HasSubstr("bench &lt;x&gt;"));
