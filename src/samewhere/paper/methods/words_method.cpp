@@ -41,9 +41,9 @@ InlierCheck orb_slam_check(const pipeline::Config& base) {
 // The views of a sequence and the score of each query with those outside the window.
 class WordsMethod : public Method {
  public:
-  WordsMethod(const pipeline::Config& base, InlierCheck check)
+  WordsMethod(const pipeline::Config& base, const InlierCheck& check)
       : window_frames_(base.retrieve.window_frames),
-        check_(std::move(check)),
+        check_(check),
         vocabulary_(vocabulary_of(base)),
         file_(vocabulary_->num_words(), BagNorm::kL1) {
     core::require(window_frames_ >= 0, "the window is in frames");
