@@ -225,6 +225,11 @@ std::optional<core::Verdict> failed_check(const Candidate& candidate, const Evid
 // A similarity, mapped into [0, 1).
 double below_1(double similarity) { return 0.499 * (1.0 + similarity); }
 
+// How many inliers a view that is no part of a sequence needs beyond one that is.
+int more_if_alone(const Config& config) {
+  return std::max(0, config.min_inliers - inliers_needed(config));
+}
+
 // The loop's edge, and the loop that it overrules.
 void add_edge(core::LoopClosure& loop, const Config& config) {
   loop.match_from_query = loop.evidence.geometry->match_from_query;
@@ -308,9 +313,12 @@ double rank(const Evidence& evidence, const Config& config) {
 
 double score(const Evidence& evidence, const Config& config) {
   if (config.rank_by == RankBy::kSimilarity) return evidence.similarity;
-  const int alone = evidence.geometry ? evidence.geometry->num_inliers : 0;
-  const int in_sequence = evidence.sequence ? evidence.sequence->num_inliers : 0;
-  return std::max(alone, in_sequence) + below_1(evidence.similarity);
+  const double ties = below_1(evidence.similarity);
+  if (evidence.sequence && evidence.sequence->num_views >= std::max(2, config.min_views))
+    return ties +
+           static_cast<double>(evidence.sequence->num_inliers) / evidence.sequence->num_views;
+  const int num_inliers = evidence.geometry ? evidence.geometry->num_inliers : 0;
+  return ties + std::max(0, num_inliers - more_if_alone(config));
 }
 
 }  // namespace samewhere::verify

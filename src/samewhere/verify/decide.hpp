@@ -40,8 +40,10 @@ bool is_recognized(const core::Verdict& verdict);
 // place is seen again, the view itself which part of it.
 double rank(const core::Evidence& evidence, const Config& config);
 
-// How sure the evidence is, for precision-recall curves: the similarity, or the inliers, those of
-// the whole sequence if there is one, plus the similarity mapped into [0, 1), which breaks ties.
+// How sure the evidence is, for precision-recall curves: the similarity, or the inliers, plus the
+// similarity mapped into [0, 1), which breaks ties. In a sequence of enough views their mean counts
+// and not their sum, for look-alike places give sequences as long, with fewer inliers a view.
+// Elsewhere those of the view count, less what a view alone needs more.
 double score(const core::Evidence& evidence, const Config& config);
 
 }  // namespace samewhere::verify

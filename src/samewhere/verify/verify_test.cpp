@@ -303,6 +303,25 @@ TEST(Score, InliersComeFirstAndSimilarityBreaksTies) {
   EXPECT_LT(score(more, by_inliers), score(few, by_inliers));
 }
 
+TEST(Score, ALongSequenceOfALookAlikeIsNotSurerThanAShortOneOfThePlace) {
+  const Config config{
+      .min_inliers = 52, .require_pose = false, .min_views = 2, .min_inliers_in_sequence = 40};
+  const auto in_sequence = [](int num_views, int inliers_of_each) {
+    core::Evidence evidence = good_evidence();
+    evidence.geometry->num_inliers = inliers_of_each;
+    evidence.sequence =
+        core::SequenceEvidence{.num_views = num_views, .num_inliers = num_views * inliers_of_each};
+    return evidence;
+  };
+  EXPECT_LT(score(in_sequence(30, 90), config), score(in_sequence(3, 120), config));
+  EXPECT_NEAR(score(in_sequence(3, 120), config), 120.5, 0.5);
+  // what just suffices scores the same, alone and in a sequence
+  core::Evidence alone = in_sequence(1, 52);
+  EXPECT_DOUBLE_EQ(score(alone, config), score(in_sequence(2, 40), config));
+  alone.geometry->num_inliers = 3;
+  EXPECT_LT(score(alone, config), 1.0);
+}
+
 TEST(Rank, AViewThatShowsMostOfTheSameComesBeforeATexturedCornerOfIt) {
   core::Evidence corner = good_evidence();
   corner.geometry->num_inliers = 200;
