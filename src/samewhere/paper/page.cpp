@@ -32,6 +32,7 @@ th:first-child, td:first-child { text-align: left; }
 thead th { border-bottom: 2px solid currentColor; }
 .published { color: #767676; font-weight: normal; }
 td.words { white-space: normal; text-align: left; }
+th.published { white-space: normal; }
 p.note, figcaption { color: #767676; }
 figure { margin: 2rem 0; }
 img { max-width: 100%; background: #fff; }
