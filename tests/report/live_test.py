@@ -9,6 +9,7 @@ results with those of the same runs without a viewer; then overrides a verdict o
 """
 import argparse
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -215,6 +216,7 @@ def main():
         page_test.skip("chromium and chromium-driver are not installed")
     if options.pictures:
         options.pictures.mkdir(parents=True, exist_ok=True)
+    os.environ.pop("SAMEWHERE_CACHE", None)  # kept pictures would end the run before its page is open
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
         folder = pathlib.Path(scratch) / "seen"
         driver = page_test.browser(1400, 900, False, True, f"{scratch}/profile")
