@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <samewhere/verify/loop_verifier.hpp>
@@ -27,6 +28,24 @@ core::Evidence evidence_for_rank(const core::Verdict& verdict) {
       (rejected->stage == core::Refusal::kSimilarity || rejected->stage == core::Refusal::kPause))
     evidence.geometry.reset();
   return evidence;
+}
+
+// Accepted ones first, then by verify::rank.
+std::pair<bool, double> order_of_view(const core::LedgerRow& row, const Config& config) {
+  return {core::is_loop(row.verdict), rank(evidence_for_rank(row.verdict), config)};
+}
+
+// Accepted ones first, then by inliers, whatever they overlap.
+std::pair<bool, double> order_of_place(const core::LedgerRow& row, const Config& config) {
+  core::Evidence evidence = evidence_for_rank(row.verdict);
+  if (evidence.geometry) evidence.geometry->overlap_ratio = 1.0;
+  return {core::is_loop(row.verdict), rank(evidence, config)};
+}
+
+bool is_beside(core::FrameId a, core::FrameId b) {
+  constexpr std::uint64_t kFrames = 20;
+  if (a.session() != b.session()) return false;
+  return std::max(a.index(), b.index()) - std::min(a.index(), b.index()) <= kFrames;
 }
 
 }  // namespace
@@ -81,12 +100,14 @@ void LoopVerifier::compare_candidates_of_one_query(const MapContext& map, const 
 
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const Config& config) {
-  const auto rank_of = [&](const core::LedgerRow& row) {
-    return std::pair(core::is_loop(row.verdict), rank(evidence_for_rank(row.verdict), config));
-  };
+  const core::LedgerRow* place = nullptr;
+  for (const core::LedgerRow& row : rows) {
+    if (place == nullptr || order_of_place(row, config) > order_of_place(*place, config)) place = &row;
+  }
   const core::LedgerRow* best = nullptr;
   for (const core::LedgerRow& row : rows) {
-    if (best == nullptr || rank_of(row) > rank_of(*best)) best = &row;
+    if (!is_beside(row.candidate.match, place->candidate.match)) continue;
+    if (best == nullptr || order_of_view(row, config) > order_of_view(*best, config)) best = &row;
   }
   return best;
 }
