@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -77,6 +78,30 @@ std::string command_line(const PaperCommand& command) {
     line += fmt::format(" --set {}", assignment);
   return line;
 }
+
+// Where images of rendered sequences are kept while the command works, since most of its time would
+// go into rendering them again for each method; a place that the user named stays in force.
+class RenderedImages {
+ public:
+  explicit RenderedImages(const std::filesystem::path& results) : folder_(results / "images") {
+    const char* const named = std::getenv(kCache);
+    is_own_ = named == nullptr || *named == '\0';
+    if (is_own_) setenv(kCache, folder_.c_str(), 1);
+  }
+  RenderedImages(const RenderedImages&) = delete;
+  RenderedImages& operator=(const RenderedImages&) = delete;
+  ~RenderedImages() {
+    if (!is_own_) return;
+    unsetenv(kCache);
+    std::error_code ignored;  // what stays is used by the next run
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+ private:
+  static constexpr const char* kCache = "SAMEWHERE_CACHE";
+  std::filesystem::path folder_;
+  bool is_own_ = false;
+};
 
 // The files of the results folder.
 class PaperFolder {
@@ -156,6 +181,7 @@ int execute(const PaperCommand& command) {
   paper::check_plan(plan);
   const paper::RowStore store(std::filesystem::path(command.out) / "rows", command.is_fresh);
   const PaperFolder folder(command, plan.tables);
+  const RenderedImages images(command.out);
   paper::Results results;
   const bool is_done = paper::run_benchmark(
       plan, store, results, [&](const paper::Results& so_far) { folder.write(so_far); });
@@ -193,7 +219,8 @@ void add_options(CLI::App& sub, PaperCommand& command) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   sub.add_flag("--quick", command.is_quick,
-               "one rendered sequence unless some are named, two seeds, one run of SLAM");
+               "one rendered sequence unless some are named, two seeds, one run of "
+               "SLAM");
   sub.add_flag("--fresh", command.is_fresh,
                "measure anew what an earlier run left in the folder's rows");
   sub.add_option("--blind-spot", command.blind_spot_views,
@@ -203,7 +230,8 @@ void add_options(CLI::App& sub, PaperCommand& command) {
   sub.add_option(
          "--out", command.out,
          "folder for the results: paper.html, tables.txt, CSV, results.json, figures as SVG "
-         "and PDF; a later run goes on with what is missing")
+         "and PDF; a later run goes on with what is missing. Rendered images are kept in it until "
+         "the end (3 GB), or where SAMEWHERE_CACHE says")
       ->capture_default_str();
   add_config_options(sub, command.config);
 }

@@ -280,6 +280,6 @@ std::vector<std::string> default_sources(const path& root) {
   return sources;
 }
 
-std::string quick_source() { return rendered_source("office-loop"); }
+std::string quick_source() { return "twin:office-loop?seed=1000&speed=2@10s"; }
 
 }  // namespace samewhere::paper

@@ -49,7 +49,7 @@ std::vector<std::filesystem::path> find_data_sets(const std::filesystem::path& r
 // rendered sequences, each with the window of its protocol. Throws as find_data_sets.
 std::vector<std::string> default_sources(const std::filesystem::path& root);
 
-// The rendered sequence that a quick run measures.
+// The rendered sequence that a quick run measures: one of the four, walked in half the time.
 std::string quick_source();
 
 }  // namespace samewhere::paper
