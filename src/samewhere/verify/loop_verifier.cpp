@@ -31,21 +31,21 @@ core::Evidence evidence_for_rank(const core::Verdict& verdict) {
 }
 
 // Accepted ones first, then by verify::rank.
-std::pair<bool, double> order_of_view(const core::LedgerRow& row, const Config& config) {
+std::pair<bool, double> order_of(const core::LedgerRow& row, const Config& config) {
   return {core::is_loop(row.verdict), rank(evidence_for_rank(row.verdict), config)};
 }
 
-// Accepted ones first, then by inliers, whatever they overlap.
-std::pair<bool, double> order_of_place(const core::LedgerRow& row, const Config& config) {
-  core::Evidence evidence = evidence_for_rank(row.verdict);
-  if (evidence.geometry) evidence.geometry->overlap_ratio = 1.0;
-  return {core::is_loop(row.verdict), rank(evidence, config)};
+int num_inliers(const core::LedgerRow& row) {
+  const auto& geometry = core::evidence_of(row.verdict).geometry;
+  return geometry ? geometry->num_inliers : 0;
 }
 
-bool is_beside(core::FrameId a, core::FrameId b) {
-  constexpr std::uint64_t kFrames = 20;
-  if (a.session() != b.session()) return false;
-  return std::max(a.index(), b.index()) - std::min(a.index(), b.index()) <= kFrames;
+// Of the loops; 0 without any, or where inliers do not rank.
+double inliers_to_compete(const std::vector<core::LedgerRow>& rows, const Config& config) {
+  int most = 0;
+  for (const core::LedgerRow& row : rows)
+    if (core::is_loop(row.verdict)) most = std::max(most, num_inliers(row));
+  return config.rank_by == RankBy::kInliers ? config.max_competing_place_ratio * most : 0.0;
 }
 
 }  // namespace
@@ -100,14 +100,11 @@ void LoopVerifier::compare_candidates_of_one_query(const MapContext& map, const 
 
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const Config& config) {
-  const core::LedgerRow* place = nullptr;
-  for (const core::LedgerRow& row : rows) {
-    if (place == nullptr || order_of_place(row, config) > order_of_place(*place, config)) place = &row;
-  }
+  const double least = inliers_to_compete(rows, config);
   const core::LedgerRow* best = nullptr;
   for (const core::LedgerRow& row : rows) {
-    if (!is_beside(row.candidate.match, place->candidate.match)) continue;
-    if (best == nullptr || order_of_view(row, config) > order_of_view(*best, config)) best = &row;
+    if (core::is_loop(row.verdict) && num_inliers(row) < least) continue;
+    if (best == nullptr || order_of(row, config) > order_of(*best, config)) best = &row;
   }
   return best;
 }
