@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <functional>
-#include <future>
 #include <string_view>
 #include <utility>
 
@@ -10,6 +8,7 @@
 
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
+#include <samewhere/core/stage_thread.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/input/prefetch.hpp>
 #include <samewhere/paper/described_recording.hpp>
@@ -64,13 +63,14 @@ std::optional<std::vector<KeptPicture>> read_and_describe(
   while (const std::optional<core::Frame> frame = source->next()) {
     if (core::is_interrupted()) return std::nullopt;
     const cv::Mat& picture = frame->images.front();
-    std::future<void> others;
-    if (also_see) others = std::async(std::launch::async, also_see, std::cref(*frame));
+    core::WorkerThread others([&] {
+      if (also_see) also_see(*frame);
+    });
     for (std::size_t i = 0; i < describers.size(); ++i) {
       described.by_describer[i].views.push_back(
           describers[i].describer->describe(frame->id, picture));
     }
-    if (others.valid()) others.get();
+    others.join();
     if (num_spread_on(num_done, recording.num_frames, num_timed) > 0)
       kept.push_back({frame->id, picture.clone()});
     progress.update(++num_done);

@@ -77,9 +77,10 @@ struct DescribedRecording {
 using SeeFrame = std::function<void(const core::Frame& frame)>;
 
 // Reads the recording and describes each frame by each describer, with a progress line on stderr;
-// `also_see` is shown each frame once, in their order, meanwhile and by another thread. Descriptions are timed after that, when
-// reading and rendering have ended: those of up to 400 frames, spread evenly, by one describer
-// after the other. Nothing after Ctrl-C. Throws InputError on a bad frame.
+// `also_see` is shown each frame once, in their order, meanwhile and by another thread.
+// Descriptions are timed after that, when reading and rendering have ended: those of up to 400
+// frames, spread evenly, by one describer after the other. Nothing after Ctrl-C. Throws InputError
+// on a bad frame.
 std::optional<DescribedRecording> describe_recording(OpenRecording recording,
                                                      const std::vector<NamedDescriber>& describers,
                                                      const SeeFrame& also_see = nullptr);

@@ -57,10 +57,10 @@ class LoopVerifier {
   VerifierSettings settings_;
 };
 
-// The best candidate of a query: accepted ones first, then by verify::rank. A loop that has fewer than
-// max_competing_place_ratio of the inliers of another does not compete with it: a look-alike that is
-// seen from where the query was taken overlaps more than the place itself that was seen from further
-// on, but has fewer inliers. nullptr of no rows.
+// The best candidate of a query: accepted ones first, then by verify::rank. A loop that has fewer
+// than max_competing_place_ratio of the inliers of another does not compete with it: a look-alike
+// that is seen from where the query was taken overlaps more than the place itself that was seen
+// from further on, but has fewer inliers. nullptr of no rows.
 const core::LedgerRow* best_of_query(const std::vector<core::LedgerRow>& rows,
                                      const Config& config);
 
