@@ -106,7 +106,7 @@ def check_buffers(page):
         }};
         return [update(2), update({NUM_UPDATES})];"""
     before, after = page.run(count)
-    page.check("the scene has buffers", before[0] > 5, before)
+    page.check("landmarks, path and camera have buffers", before[0] >= 3, before)  # candidates, once there are some
     page.check("updates leave no buffers behind", before == after, f"{before}, {after}")
 
 
