@@ -80,10 +80,12 @@ std::string command_line(const PaperCommand& command) {
 }
 
 // Where images of rendered sequences are kept while the command works, since most of its time would
-// go into rendering them again for each method; a place that the user named stays in force.
+// go into rendering them again for each method; a place that the user named stays in force. The
+// folder has a name that no data set has: it is removed at the end.
 class RenderedImages {
  public:
-  explicit RenderedImages(const std::filesystem::path& results) : folder_(results / "images") {
+  explicit RenderedImages(const std::filesystem::path& results)
+      : folder_(results / ".rendered-by-samewhere") {
     const char* const named = std::getenv(kCache);
     is_own_ = named == nullptr || *named == '\0';
     if (is_own_) setenv(kCache, folder_.c_str(), 1);
@@ -219,8 +221,7 @@ void add_options(CLI::App& sub, PaperCommand& command) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   sub.add_flag("--quick", command.is_quick,
-               "one rendered sequence unless some are named, two seeds, one run of "
-               "SLAM");
+               "one rendered sequence unless some are named, two seeds, one run of SLAM");
   sub.add_flag("--fresh", command.is_fresh,
                "measure anew what an earlier run left in the folder's rows");
   sub.add_option("--blind-spot", command.blind_spot_views,
@@ -231,7 +232,7 @@ void add_options(CLI::App& sub, PaperCommand& command) {
          "--out", command.out,
          "folder for the results: paper.html, tables.txt, CSV, results.json, figures as SVG "
          "and PDF; a later run goes on with what is missing. Rendered images are kept in it until "
-         "the end (3 GB), or where SAMEWHERE_CACHE says")
+         "the end (2 GB), or where SAMEWHERE_CACHE says")
       ->capture_default_str();
   add_config_options(sub, command.config);
 }
