@@ -60,7 +60,7 @@ Relocalization::Result Relocalization::begin(const features::View& view,
   // without depth every pose is reachable, also a weak one in a look-alike place
   const bool may_be_weak = is_shortly_after(last, view.stamp_s) && !is_without_depth(map);
   RequiredEvidence required{num_views_required(config_, last, view.stamp_s), may_be_weak, {}};
-  const MotionPrediction prediction(map, motion, view.stamp_s, metre_of(map));
+  const MotionPrediction prediction(map, motion, view.stamp_s, config_.verify);
   const double min_ratio = config_.track.relocalization.min_log_ratio;
   if (config_.verify.prior == verify::Prior::kRepetitive) {
     required.num_views = 1;

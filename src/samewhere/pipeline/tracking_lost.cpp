@@ -1,4 +1,5 @@
 // Tracking where the camera is lost or may be in a look-alike place.
+#include <algorithm>
 #include <utility>
 
 #include <samewhere/pipeline/tracking.hpp>
@@ -21,11 +22,12 @@ bool Tracking::is_plausible(const scene::TrackedView& tracked) {
   constexpr double kGap_s = 1.0;
   const core::FramePose* last = log_.last_confirmed();
   if (config_.verify.prior == verify::Prior::kUnique || last == nullptr) return true;
-  if (tracked.pose.stamp_s - last->stamp_s <= kGap_s) return true;
-  if (!is_reference_visible(last) || !is_reference_visible(log_.before(*last))) receive_map();
+  const core::FramePose* before = log_.before(*last);
+  const double usual_s = before == nullptr ? 0.0 : last->stamp_s - before->stamp_s;
+  if (tracked.pose.stamp_s - last->stamp_s <= std::max(kGap_s, 2.0 * usual_s)) return true;
+  if (!is_reference_visible(last) || !is_reference_visible(before)) receive_map();
   const scene::MapVersion& map = map_.version();
-  const MotionPrediction prediction(map, {last, log_.before(*last)}, tracked.pose.stamp_s,
-                                    metre_of(map));
+  const MotionPrediction prediction(map, {last, before}, tracked.pose.stamp_s, config_.verify);
   // a look-alike place is tracked as well: as for a lost camera, motion must tell them apart
   return prediction.log_likelihood_ratio(map, tracked.pose) >=
          config_.track.relocalization.min_log_ratio;

@@ -26,12 +26,6 @@ core::Vector6d correction_by(const scene::MapVersion& map, const scene::LoopEdge
   return difference(known, claim.match_from_query);
 }
 
-// Metres, or without depth median depths.
-double look_alike_distance(const scene::MapVersion& map, const Config& config) {
-  return has_scale_drift(map) ? config.min_look_alike_distance_without_depth
-                              : config.min_look_alike_distance_m;
-}
-
 }  // namespace
 
 core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
@@ -47,7 +41,8 @@ core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
     const core::Matrix6d covariance = expected.covariance + loop_information(config).inverse();
     evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
     evidence.sigma_m = least_certain_sigma_m(covariance);
-    evidence.look_alike_gain = look_alike_gain(error, covariance, look_alike_distance(map, config));
+    evidence.look_alike_gain =
+        look_alike_gain(error, covariance, least_look_alike_distance(map, config));
   }
   return evidence;
 }
@@ -63,11 +58,16 @@ core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scen
     const core::Matrix6d covariance = *drift + loop_information(config).inverse();
     evidence.mahalanobis_squared_with_loops = correction.dot(covariance.llt().solve(correction));
     evidence.look_alike_gain_with_loops =
-        look_alike_gain(correction, covariance, look_alike_distance(map, config));
+        look_alike_gain(correction, covariance, least_look_alike_distance(map, config));
     evidence.sigma_m = std::min(evidence.sigma_m.value_or(std::numeric_limits<double>::infinity()),
                                 least_certain_sigma_m(covariance));
   }
   return evidence;
+}
+
+double least_look_alike_distance(const scene::MapVersion& map, const Config& config) {
+  return has_scale_drift(map) ? config.min_look_alike_distance_without_depth
+                              : config.min_look_alike_distance_m;
 }
 
 core::Matrix6d loop_information(const Config& config) {

@@ -27,6 +27,9 @@ core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config);
 
+// How near a look-alike place may be: metres, or without depth median depths.
+double least_look_alike_distance(const scene::MapVersion& map, const Config& config);
+
 // Information of a loop's relative pose: independent errors, loop_sigma_m and loop_sigma_rad.
 core::Matrix6d loop_information(const Config& config);
 
