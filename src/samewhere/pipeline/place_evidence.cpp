@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include <samewhere/pipeline/place_evidence.hpp>
@@ -24,7 +25,6 @@ constexpr double kChanges = 0.02;
 constexpr double kRemembers = 0.92;
 // Density of any ratio, whatever the place: people, blur, the end of the map.
 constexpr double kOutlier = 0.05;
-constexpr double kLeavesPerMetre = 0.05;
 // Share of new landmarks from which a metre counts in full.
 constexpr double kNewRatio = 0.2;
 // Of places, around the mean.
@@ -62,13 +62,26 @@ double density_left(double ratio) {
 
 }  // namespace
 
+double NewGround::add(const Eigen::Vector3d& position, double moved_m) {
+  constexpr double kSpacing_m = 1.0;
+  constexpr double kNear_m = 1.5;
+  constexpr std::ptrdiff_t kNewest = 3;  // the camera has just been there
+  const auto is_near = [&](const Eigen::Vector3d& earlier) {
+    return (position - earlier).norm() < kNear_m;
+  };
+  const auto end = path_.end() - std::min(kNewest, std::ssize(path_));
+  const bool is_new = std::none_of(path_.begin(), end, is_near);
+  if (path_.empty() || (position - path_.back()).norm() >= kSpacing_m) path_.push_back(position);
+  return is_new ? moved_m : 0.0;
+}
+
 void PlaceEvidence::add(const PlaceView& view) {
   const double weight = view.new_ratio;
   const auto likelihood = [&](double density) { return std::pow(density, weight); };
   const double same = likelihood(density_here(view.found_ratio));
   const double differing = likelihood(density_differing(view.found_ratio));
   const double new_m = view.moved_m * std::min(1.0, view.new_ratio / kNewRatio);
-  const double leaves = 1.0 - std::exp(-kLeavesPerMetre * new_m);
+  const double leaves = 1.0 - std::exp(-new_m / common_length_m_);
 
   mix(here_.as_mapped, here_.changed);
   mix(lookalike_.same, lookalike_.differing);

@@ -1,22 +1,40 @@
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 namespace samewhere::pipeline {
 
 // What a view says about a place, after a motion.
 struct PlaceView {
   double found_ratio = 0.0;  // inliers per visible landmark, over what mapping found there
   double new_ratio = 0.0;    // of the inliers: landmarks that were no inliers of an earlier view
-  double moved_m = 0.0;      // since the view before
+  double moved_m = 0.0;      // since the view before, where the camera had not been yet
+};
+
+// The metres of a path where it had not been yet: a corridor walked to its end and back has the
+// same length in a look-alike.
+class NewGround {
+ public:
+  // The next position, metres; `moved_m`: since the last one. Returns it, or 0 near an earlier part
+  // of the path.
+  double add(const Eigen::Vector3d& position, double moved_m);
+
+ private:
+  std::vector<Eigen::Vector3d> path_;
 };
 
 // Whether views show this place of the map, or a look-alike place that is not in the map: logarithm
 // of a likelihood ratio, over metres. This place shows the landmarks that mapping found, or fewer
 // throughout, if it has changed since. A look-alike shows as many, or fewer throughout, until the
-// camera leaves what both places have in common, at a constant rate per metre; after that the map
+// camera leaves what both places have in common, once in `common_length_m`; after that the map
 // explains little. Views count by their new landmarks: the same landmarks again, or turning on the
 // spot, add nothing. Learned on rendered sequences, seeds below 1000 (decision 034).
 class PlaceEvidence {
  public:
+  explicit PlaceEvidence(double common_length_m) : common_length_m_(common_length_m) {}
+
   void add(const PlaceView& view);
 
   // Of this place against a look-alike.
@@ -38,6 +56,7 @@ class PlaceEvidence {
     double left = 0.0;  // the camera has left what both have in common
   };
 
+  double common_length_m_;
   Here here_;
   LookAlike lookalike_;
   double log_ratio_ = 0.0;

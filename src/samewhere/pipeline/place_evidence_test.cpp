@@ -9,7 +9,8 @@ constexpr double kConfirmed = 2.5;  // track.relocalization.min_log_ratio
 constexpr PlaceView kExplained{.found_ratio = 1.05, .new_ratio = 0.3, .moved_m = 0.25};
 constexpr PlaceView kUnexplained{.found_ratio = 0.05, .new_ratio = 1.0, .moved_m = 0.25};
 
-PlaceEvidence after(int num_views, const PlaceView& view, PlaceEvidence evidence = {}) {
+PlaceEvidence after(int num_views, const PlaceView& view,
+                    PlaceEvidence evidence = PlaceEvidence(20.0)) {
   for (int i = 0; i < num_views; ++i) evidence.add(view);
   return evidence;
 }
@@ -26,6 +27,22 @@ TEST(PlaceEvidence, GrowsWithMetresThatAreExplained) {
   EXPECT_GT(short_walk, 0.0);
   EXPECT_GT(long_walk, short_walk);
   EXPECT_LT(long_walk, kConfirmed) << "20 m of a corridor may be those of its look-alike";
+}
+
+TEST(PlaceEvidence, MetresCountLessWhereLookAlikesGoOnForLonger) {
+  EXPECT_GT(after(200, kExplained).log_likelihood_ratio(), kConfirmed);
+  EXPECT_LT(after(200, kExplained, PlaceEvidence(100.0)).log_likelihood_ratio(), kConfirmed);
+}
+
+TEST(NewGround, APathForthAndBackCountsOnce) {
+  NewGround ground;
+  double counted_m = 0.0;
+  for (int i = 1; i <= 100; ++i) counted_m += ground.add({0.2 * i, 0.0, 0.0}, 0.2);
+  EXPECT_NEAR(counted_m, 20.0, 1e-9);
+  for (int i = 99; i >= 0; --i) counted_m += ground.add({0.2 * i, 0.5, 0.0}, 0.2);
+  EXPECT_LT(counted_m, 20.0 + 3.0) << "only where it turns";
+  for (int i = 1; i <= 50; ++i) counted_m += ground.add({0.0, 0.2 * i, 0.0}, 0.2);
+  EXPECT_GT(counted_m, 20.0 + 7.0) << "a corridor that crosses it is new";
 }
 
 TEST(PlaceEvidence, FallsWhereTheCameraLeavesALookAlike) {

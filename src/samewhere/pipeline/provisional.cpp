@@ -73,19 +73,19 @@ ProvisionalRelocalization::ProvisionalRelocalization(const Config& config,
 void ProvisionalRelocalization::begin(LeadingHypotheses leading, double log_ratio_by_motion,
                                       const features::View& view) {
   hypotheses_.clear();
-  Hypothesis first;
+  Hypothesis first(config_.track.relocalization.common_length_m);
   first.place = place_of(leading.best);
   first.place.is_recognised = true;
   first.pose = std::move(leading.best);
+  first.log_ratio_by_motion = log_ratio_by_motion;
   hypotheses_.push_back(std::move(first));
   for (const Place& place : leading.others) {
-    hypotheses_.emplace_back().place = place;
+    hypotheses_.emplace_back(config_.track.relocalization.common_length_m).place = place;
     hypotheses_.back().since_step_m = kStep_m;  // evaluated soon
     hypotheses_.back().since_step.translation.x() = kStep_m;
   }
   last_view_ = view;
   last_motion_ = {};
-  log_ratio_by_motion_ = log_ratio_by_motion;
   note_asked();
   num_unmeasured_ = 0;
 }
@@ -169,12 +169,16 @@ void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& qu
     hypothesis.views.erase(hypothesis.views.begin());
 }
 
+double ProvisionalRelocalization::new_metres(Hypothesis& hypothesis, const Query& query) {
+  const double metre = metre_of(query.map);
+  return hypothesis.new_ground.add(world_from_body(query.map, hypothesis.place).translation / metre,
+                                   hypothesis.since_step.translation.norm() / metre);
+}
+
 void ProvisionalRelocalization::add_step(Hypothesis& hypothesis, const Query& query) {
   add_view(hypothesis, query);
   const Counts& total = hypothesis.views.back().total;
-  PlaceView view{.found_ratio = 0.0,
-                 .new_ratio = 1.0,
-                 .moved_m = hypothesis.since_step.translation.norm() / metre_of(query.map)};
+  PlaceView view{.found_ratio = 0.0, .new_ratio = 1.0, .moved_m = new_metres(hypothesis, query)};
   if (hypothesis.pose) {
     const std::vector<core::LandmarkId> inliers = inliers_of(*hypothesis.pose);
     int num_new = 0;
@@ -221,8 +225,10 @@ void ProvisionalRelocalization::merge_equal(const scene::MapVersion& map) {
           !are_one_place(map, kept.place, other.place, median_distance(*kept.pose)))
         continue;
       kept.place.is_recognised |= other.place.is_recognised;
+      kept.log_ratio_by_motion = std::max(kept.log_ratio_by_motion, other.log_ratio_by_motion);
       if (other.evidence.log_likelihood_ratio() > kept.evidence.log_likelihood_ratio()) {
         kept.evidence = other.evidence;
+        kept.new_ground = std::move(other.new_ground);
         kept.views = std::move(other.views);
         kept.seen = std::move(other.seen);
       }
@@ -248,7 +254,7 @@ void ProvisionalRelocalization::add_places(const std::vector<Place>& places, con
       continue;
     }
     if (hypotheses_.size() >= kMaxProvisional) continue;
-    Hypothesis next;
+    Hypothesis next(config_.track.relocalization.common_length_m);
     next.place = place;
     next.since_step_m = kStep_m;
     next.since_step.translation.x() = kStep_m;
@@ -299,7 +305,8 @@ double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const 
     by_lookalike = std::max(by_lookalike, by_differences);
     against = std::min(against, by_differences);
   }
-  return hypothesis.evidence.log_likelihood_ratio() + log_ratio_by_motion_ + by_lookalike + against;
+  return hypothesis.evidence.log_likelihood_ratio() + hypothesis.log_ratio_by_motion +
+         by_lookalike + against;
 }
 
 bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {

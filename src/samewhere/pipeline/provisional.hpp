@@ -21,7 +21,7 @@ class ProvisionalRelocalization {
  public:
   ProvisionalRelocalization(const Config& config, const track::Tracker& tracker);
 
-  // `log_ratio_by_motion`: see MotionPrediction.
+  // `log_ratio_by_motion`: of the leading hypothesis, see MotionPrediction.
   void begin(LeadingHypotheses leading, double log_ratio_by_motion, const features::View& view);
   bool is_active() const { return !hypotheses_.empty(); }
   void reset() { hypotheses_.clear(); }
@@ -45,12 +45,16 @@ class ProvisionalRelocalization {
 
  private:
   struct Hypothesis {
+    explicit Hypothesis(double common_length_m) : evidence(common_length_m) {}
+
     Place place;                          // of the newest view
     std::optional<RelocalizedPose> pose;  // of the view that was evaluated last
     std::vector<ViewEvidence> views;      // after steps, oldest first
     core::Rigid3 since_step;
     double since_step_m = 0.0;
     PlaceEvidence evidence;
+    NewGround new_ground;
+    double log_ratio_by_motion = 0.0;
     PlaceDifferences differences;  // of the best hypothesis, from this one
     std::set<core::LandmarkId> seen;
     int num_failures = 0;  // evaluations without a pose, in a row
@@ -68,6 +72,8 @@ class ProvisionalRelocalization {
   void evaluate_one_other(const Query& query);
   void merge_equal(const scene::MapVersion& map);
   void add_view(Hypothesis& hypothesis, const Query& query) const;
+  // Since the last step, where the camera had not been yet.
+  static double new_metres(Hypothesis& hypothesis, const Query& query);
   void add_step(Hypothesis& hypothesis, const Query& query);
   void add_places(const std::vector<Place>& places, const Query& query);
   static int num_visible(const Hypothesis& hypothesis);  // in its last view
@@ -85,7 +91,6 @@ class ProvisionalRelocalization {
   std::vector<Hypothesis> hypotheses_;  // the best first
   features::View last_view_;
   core::Rigid3 last_motion_;  // constant velocity
-  double log_ratio_by_motion_ = 0.0;
   core::Rigid3 since_asked_;
   double since_asked_m_ = 0.0;
   int num_unmeasured_ = 0;  // views in a row that the best hypothesis did not explain

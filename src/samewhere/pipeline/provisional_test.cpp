@@ -87,11 +87,12 @@ class ProvisionalRelocalizationTest : public testing::Test {
     return {local_map, *track};
   }
 
-  void begin(core::KeyframeId best, const std::vector<core::KeyframeId>& others = {}) {
+  void begin(core::KeyframeId best, const std::vector<core::KeyframeId>& others = {},
+             double log_ratio_by_motion = 0.0) {
     const features::View view = view_of(world_, 1000, 0.0);
     LeadingHypotheses leading{pose_at(view, best), {}};
     for (const auto& other : others) leading.others.push_back({other, core::Rigid3{}, true});
-    provisional_.begin(leading, 0.0, view);
+    provisional_.begin(leading, log_ratio_by_motion, view);
   }
 
   // Walks through the corridor until there is a decision; where it comes.
@@ -189,6 +190,16 @@ TEST_F(WithALookAlikeInTheMap, TheBestHypothesisTakesOverAndThePosesMove) {
   EXPECT_EQ(walk(world_, 0.0, 10.0).decision, Decision::kConfirmed);
   ASSERT_TRUE(new_from_old_);
   EXPECT_LT((new_from_old_->translation + kFarRoom.translation).norm(), 0.2);
+}
+
+// The map of the predicted place ends after 3 m.
+TEST_F(ProvisionalRelocalizationTest, MotionThatPredictsOnePlaceIsNoEvidenceForAnother) {
+  const core::KeyframeId predicted(map_.keyframes.size());
+  add_walk(map_, world_, 3.0, kFarRoom);
+  begin(predicted, {core::KeyframeId(0)}, 4.0);
+  const End end = walk(world_, 0.0, 12.0);
+  ASSERT_TRUE(new_from_old_) << "the other place takes over";
+  EXPECT_EQ(end.decision, Decision::kOpen);
 }
 
 TEST_F(ProvisionalRelocalizationTest, BridgesBlankViewsByTheLastMotion) {

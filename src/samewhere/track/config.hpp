@@ -101,6 +101,7 @@ struct RelocalizationConfig {
   double max_competing_ratio = 0.75;
   int min_views = 5;
   double min_log_ratio = 2.5;
+  double common_length_m = 60.0;
   int reinitialize_after_frames = 30;
 };
 
@@ -129,6 +130,11 @@ inline void visit_fields(RelocalizationConfig& config, core::FieldVisitor& visit
                  "takes it back",
          .min = 0.0,
          .max = 100.0});
+  visit("common_length_m", config.common_length_m,
+        {.help = "`prior: repetitive`: how far look-alike places go on alike, on average; longer "
+                 "corridors that look alike from end to end need more, metres",
+         .min = 1.0,
+         .max = 10000.0});
   visit("reinitialize_after_frames", config.reinitialize_after_frames,
         {.help = "with depth: lost frames after which a map with fewer than provisional_keyframes "
                  "is re-initialized",
