@@ -52,6 +52,15 @@ std::optional<core::Rigid3> OdometryTracking::motion(double from_s, double to_s)
   return inverse(*world_from_first) * *world_from_last;
 }
 
+void OdometryTracking::note_images(double last_s, double view_s) {
+  constexpr double kUnseen_s = 1.0;
+  if (path_->gap_s(last_s, view_s) > kUnseen_s) unseen_until_s_ = view_s;
+}
+
+bool OdometryTracking::is_before_unseen(const scene::Keyframe& keyframe) const {
+  return unseen_until_s_ && keyframe.view.stamp_s < *unseen_until_s_;
+}
+
 std::optional<scene::TrackedView> OdometryTracking::track(const features::View& view,
                                                           const VisibleMap& map,
                                                           const core::Rigid3& guessed,
@@ -63,9 +72,10 @@ std::optional<scene::TrackedView> OdometryTracking::track(const features::View& 
                              .duration_s = view.stamp_s - from_s,
                              .has_gap = is_in_gap || path_->gap_s(from_s, view.stamp_s) > 0.0,
                              .normal_in_before = path_->normal_in_body(from_s)};
-  const auto seen =
-      track_near(view, map.local_map(), moved.has_gap ? guessed : moved.before_from_after.a_from_b,
-                 tracker, config_);
+  std::optional<track::Track> seen;
+  if (!is_before_unseen(newest))
+    seen = track_near(view, map.local_map(),
+                      moved.has_gap ? guessed : moved.before_from_after.a_from_b, tracker, config_);
   const auto images = motion_of(seen);
   if (is_in_gap && !images) return std::nullopt;
   const geometry::UncertainPose motion =
@@ -86,6 +96,7 @@ std::optional<scene::TrackedView> OdometryTracking::track(const features::View& 
 bool OdometryTracking::is_worth_keeping(const scene::MapVersion& map,
                                         const scene::TrackedView& tracked) const {
   constexpr double kLeastRatio = 0.25;  // whatever the view shows
+  if (is_before_unseen(map.keyframes.back())) return true;
   const core::Rigid3& moved = tracked.pose.reference_from_frame;
   const double distance = moved.translation.norm() / config_.odometry.keyframe_distance_m;
   const double turn = core::angle_rad(moved.rotation) / config_.map.max_turn_rad;

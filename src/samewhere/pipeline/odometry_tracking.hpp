@@ -22,6 +22,11 @@ class OdometryTracking {
   // Of the body at `to` in that at `from`; nothing if one of them has no pose.
   std::optional<core::Rigid3> motion(double from_s, double to_s) const;
 
+  // Before track(): the image before the view. Over a second with neither images nor odometry the
+  // camera may have been taken to a look-alike place, which images cannot tell from the newest
+  // keyframe.
+  void note_images(double last_s, double view_s);
+
   // The view relative to the newest keyframe. Weak: too few of its features show landmarks for a
   // visual pose; then it has none. In a gap of odometry features give the pose, near `guessed` of
   // the body in the reference of the map; nothing if they cannot.
@@ -33,8 +38,11 @@ class OdometryTracking {
   bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked) const;
 
  private:
+  bool is_before_unseen(const scene::Keyframe& keyframe) const;
+
   Config config_;
   std::shared_ptr<const OdometryPath> path_;
+  std::optional<double> unseen_until_s_;
 };
 
 }  // namespace samewhere::pipeline

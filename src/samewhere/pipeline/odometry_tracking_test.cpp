@@ -137,6 +137,28 @@ TEST(OdometryTracking, ADarkGapLeavesFramesWithoutAPoseAndAnUncertainEdge) {
   EXPECT_GT(std::sqrt(largest), config.odometry.gap_per_s * gap_s);
 }
 
+// A recording that is paused in a lift: the landing of the other floor looks the same.
+TEST(OdometryTracking, ImagesDoNotBridgeWhatNeitherTheyNorOdometryHaveSeen) {
+  Config config = short_walk();
+  config.close_loops = false;
+  constexpr double kPause_s = 20.0;
+  core::Trajectory odometry = true_poses(config);
+  for (std::size_t i = 12; i < odometry.size(); ++i) odometry[i].stamp_s += kPause_s;
+  Slam slam(config);
+  slam.follow(path_of(odometry, config));
+  const auto source = twin::open_twin(config.source, config.twin);
+  while (auto frame = source->next()) {
+    if (frame->id.index() >= 12) frame->stamp_s += kPause_s;
+    slam.feed(*frame);
+  }
+  slam.finish();
+  double largest = 0.0;
+  for (std::size_t k = 1; k < slam.map().keyframes.size(); ++k)
+    largest =
+        std::max(largest, slam.map().keyframes[k].odometry->information.inverse().eval()(0, 0));
+  EXPECT_GT(std::sqrt(largest), 0.9 * config.odometry.gap_per_s * kPause_s);
+}
+
 // As the floor indicator of a lift: with planar odometry only images tell the height.
 TEST(OdometryTracking, OfOdometryInAPlaneAnUnseenHeightIsUnknown) {
   Config config = short_walk();

@@ -210,6 +210,8 @@ Tracking::MaybeTracked Tracking::follow_odometry(const core::Frame& frame,
     InitialViews initial{StartMap{view, frame.images[0]}, num_landmarks, {}};
     return begin_map(frame, view, initial);
   }
+  if (const core::FramePose* last = log_.last_confirmed())
+    odometry_->note_images(last->stamp_s, view.stamp_s);
   const core::Rigid3 guessed =
       map_.reference_from(state_.last_frame()->tracked.pose) * predicted_motion(view);
   MaybeTracked tracked = odometry_->track(view, map_, guessed, tracker_);
