@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -66,14 +67,23 @@ paper::BenchmarkPlan plan_of(const PaperCommand& command) {
   return plan;
 }
 
-// What makes the same results again.
+// What makes the same results again: all options that bear on a figure.
 std::string command_line(const PaperCommand& command) {
+  const PaperCommand usual;
   std::string line = "samewhere bench paper";
+  const auto add = [&](std::string_view option, const auto& value, const auto& usual_value) {
+    if (value != usual_value) line += fmt::format(" {} {}", option, value);
+  };
   for (const std::string& source : command.sources) line += fmt::format(" '{}'", source);
   if (command.is_quick) line += " --quick";
   line += " --tables " + command.tables;
   if (!command.methods.empty())
     line += fmt::format(" --methods {}", fmt::join(command.methods, ","));
+  add("--seeds", command.num_seeds, usual.num_seeds);
+  add("--runs", command.num_slam_runs, usual.num_slam_runs);
+  add("--blind-spot", command.blind_spot_views, usual.blind_spot_views);
+  add("--profile", command.config.profile, usual.config.profile);
+  add("--config", command.config.file, usual.config.file);
   for (const std::string& assignment : command.config.assignments)
     line += fmt::format(" --set {}", assignment);
   return line;

@@ -69,6 +69,28 @@ TEST_F(BenchPaper, PrintsAndWritesTheTables) {
   for (const char* file : {"paper.html", "results.json", "slam.csv", "blind-spot.csv",
                            "blind-spot.svg", "rows/walk-2.ours.json"})
     EXPECT_TRUE(std::filesystem::exists(path("out") / file)) << file;
+  // the page says which command makes it again
+  const std::string page = core::read_file(path("out/paper.html"));
+  EXPECT_NE(page.find("@2&#39; --tables 2-6 --methods paper,hog,ours --seeds 2 --blind-spot 100 "
+                      "--set describe.method=hog"),
+            std::string::npos);
+}
+
+TEST_F(BenchPaper, RenderedImagesAreKeptWhereSaidAndElseUntilTheEnd) {
+  const std::string run =
+      "'twin:office-loop?seed=1@2' --tables 4 --methods hog --seeds 1 --set twin.num_frames=6 ";
+  ASSERT_EQ(setenv("SAMEWHERE_CACHE", path("kept").c_str(), 1), 0);
+  const Outcome named = bench(run + "--out " + quoted(path("named")));
+  ASSERT_EQ(named.exit_code, 0) << named.err;
+  EXPECT_FALSE(std::filesystem::is_empty(path("kept")));
+  EXPECT_FALSE(std::filesystem::exists(path("named/.rendered-by-samewhere")));
+  ASSERT_EQ(unsetenv("SAMEWHERE_CACHE"), 0);
+  folder_.write("out/images/mine.txt", "another's\n");
+  const Outcome unnamed = bench(run + "--out " + quoted(path("out")));
+  ASSERT_EQ(unnamed.exit_code, 0) << unnamed.err;
+  EXPECT_FALSE(std::filesystem::exists(path("out/.rendered-by-samewhere")));
+  EXPECT_TRUE(std::filesystem::exists(path("out/images/mine.txt")));
+  EXPECT_EQ(core::read_file(path("out/tables.txt")), core::read_file(path("named/tables.txt")));
 }
 
 TEST_F(BenchPaper, BadInputIsOneLineBeforeAnyWork) {
