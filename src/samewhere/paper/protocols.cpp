@@ -104,6 +104,13 @@ std::vector<Row> recordings() {
         .place_file = kOwn,
         .pose_file = "poses.txt"},
        {.is_whole_name = true, .names = {"hololens"}}},
+      {{.data_set = "tum_fr1_rpy",
+        .window_frames = 50,
+        .num_images = 200,
+        .has_depth = true,
+        .place_file = kOwn,
+        .pose_file = "groundtruth.txt"},
+       {.is_whole_name = true, .names = {"tumfr1rpy"}}},
   };
 }
 

@@ -34,6 +34,7 @@ TEST_F(Protocols, ADataSetIsKnownByTheNameOfItsFolder) {
             "TUM fr3/long_office_household");
   EXPECT_EQ(data_set_of("rtabmap_corridor"), "rtabmap_corridor");
   EXPECT_EQ(data_set_of("redkitchen/"), "redkitchen");
+  EXPECT_EQ(data_set_of("tum_fr1_rpy"), "tum_fr1_rpy");
   EXPECT_EQ(data_set_of("my_redkitchen_copy"), "none");
   EXPECT_EQ(data_set_of("newer_college"), "none");
 }
