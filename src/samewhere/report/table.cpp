@@ -30,8 +30,10 @@ std::string text_line(const Row& row, const std::vector<std::size_t>& widths) {
 
 std::string csv_line(const Row& row) {
   std::string line;
-  for (std::size_t i = 0; i < row.size(); ++i)
-    line += (i == 0 ? "" : ",") + core::csv_field(row[i]);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) line += ',';
+    line += core::csv_field(row[i]);
+  }
   return line + "\n";
 }
 
