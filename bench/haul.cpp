@@ -17,8 +17,10 @@
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/timing.hpp>
 #include <samewhere/pipeline/slam.hpp>
+#include <samewhere/report/funnel.hpp>
 #include <samewhere/run/map_saver.hpp>
 #include <samewhere/run/open_source.hpp>
+#include <samewhere/run/prior.hpp>
 #include <samewhere/run/run_metrics.hpp>
 
 namespace samewhere::bench {
@@ -32,6 +34,7 @@ struct Settings {
   bool close_loops = true;
   std::string map_file;
   std::string csv_file;
+  std::vector<std::string> assignments;  // "section.key=value", on top of the profile
 };
 
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
@@ -75,7 +78,8 @@ class Haul {
  public:
   // The map is saved as it grows, if a file is named.
   Haul(const pipeline::Config& config, const std::string& map_file)
-      : source_(run::open_source(config)),
+      : checks_(config.verify),
+        source_(run::open_source(config)),
         slam_(run::with_window_in_frames(config, source_->info()), pipeline::DepthFrom::kSensor,
               keep_map()) {
     if (!map_file.empty()) saver_.emplace(map_file, config, slam_.describer_checksum());
@@ -126,9 +130,14 @@ class Haul {
     Table table{{"figure", "value"}, {}};
     for (const auto& figure : run::figures_of(run::evaluate_slam(findings, truth)))
       table.rows.push_back({figure.name, figure.value});
+    const auto prior = run::prior_figure(slam_.ledger(), checks_);
+    table.rows.push_back({prior.name, prior.value});
     table.rows.push_back({"live landmarks", std::to_string(num_live(slam_.map().landmarks))});
     return table;
   }
+
+  // What each check rejected, and how many candidates are ambiguous at the end.
+  std::string funnel() const { return report::funnel_text(report::funnel(slam_.ledger())); }
 
  private:
   pipeline::KeepMap keep_map() {
@@ -175,6 +184,7 @@ class Haul {
                 "tracking, processor ms median / p99", "wall ms median / p99", "memory MiB",
                 "in use MiB", "mapped files MiB"},
                {}};
+  verify::Config checks_;
   std::unique_ptr<core::Source> source_;
   std::optional<run::MapSaver> saver_;  // from the first frame on in mapping's thread
   pipeline::Slam slam_;
@@ -186,11 +196,13 @@ void measure(const Settings& settings) {
   config.close_loops = settings.close_loops;
   config.twin.num_frames = settings.num_frames;
   config.map.keyframes_in_memory = settings.keyframes_in_memory;
+  for (const auto& assignment : settings.assignments) core::set_config(config, assignment);
   Haul haul(config, settings.map_file);
   const Table table = haul.run(settings.num_parts);
   publish(table, settings.csv_file);
   publish(haul.stages(), "");
   publish(haul.quality(), "");
+  fmt::print("{}", haul.funnel());
   fmt::print("peak memory {:.0f} MiB\n", core::peak_memory_mib());
 }
 
@@ -209,6 +221,9 @@ std::function<void()> set_up(CLI::App& app) {
   app.add_option("--close-loops", settings->close_loops, "whether loops are looked for");
   app.add_option("--map", settings->map_file, "save the map in this new file")
       ->check(CLI::NonexistentPath);
+  app.add_option("--set", settings->assignments,
+                 "one setting, e.g. verify.asked_again_per_keyframe=0")
+      ->allow_extra_args(false);
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }
