@@ -25,6 +25,8 @@ class PlaceIndex {
   core::Descriptor describe(core::FrameId frame, const cv::Mat& image) const;
   void remember(const core::Descriptor& descriptor, const features::View& view);
 
+  void forget() { retriever_.forget(); }  // all views
+
   // The views to compare for recognition alone, at most retrieve.num_candidates and
   // retrieve.word_candidates outside the exclusion window; then the view is remembered.
   std::vector<retrieve::FoundView> search(const core::Descriptor& descriptor,

@@ -43,6 +43,11 @@ void Retriever::add(const core::Descriptor& descriptor, const cv::Mat& features)
   describer_checksum_ = descriptor.describer_checksum;
 }
 
+void Retriever::forget() {
+  store_ = make_store(config_);
+  if (words_) words_->forget();
+}
+
 core::Descriptor Retriever::view(int position) const {
   const std::span<const float> unit = store_.vector(position);
   return {store_.frame(position), {unit.begin(), unit.end()}, *describer_checksum_};

@@ -40,6 +40,9 @@ class Retriever {
   // zero.
   void add(const core::Descriptor& descriptor, const cv::Mat& features = {});
 
+  // All views, as if none had been added. Later frames are still later than theirs.
+  void forget();
+
   // At most config.num_candidates views by image descriptor, and behind them at most
   // config.word_candidates others by visual words, none within the window. Exact search has no
   // threshold; verification decides. The other searches may find nothing; their draws depend on

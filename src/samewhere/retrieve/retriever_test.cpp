@@ -111,6 +111,21 @@ TEST(Retriever, CandidatesComeBestFirstAndTheExactOnesAreAnUpperBound) {
   }
 }
 
+TEST(Retriever, ForgottenViewsAreNeverFound) {
+  for (const Search search : {Search::kExact, Search::kSampled, Search::kEveryQueue}) {
+    Retriever retriever = filled(config_of(search, 0), 3, 100);
+    core::Random random(4);
+    const core::Descriptor query = random_view(random, 200);
+    ASSERT_FALSE(candidates_of(retriever, query).empty());
+    retriever.forget();
+    EXPECT_EQ(retriever.num_views(), 0);
+    EXPECT_TRUE(candidates_of(retriever, query).empty());
+    retriever.add(random_view(random, 150));
+    for (const std::uint64_t match : matches(candidates_of(retriever, query)))
+      EXPECT_EQ(match, 150U);
+  }
+}
+
 TEST(Retriever, AViewInsideTheWindowIsNeverACandidate) {
   for (const Search search : {Search::kExact, Search::kSampled}) {
     Config config = config_of(search, 30);

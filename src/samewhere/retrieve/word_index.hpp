@@ -26,6 +26,8 @@ class WordIndex {
   // The next view, by the descriptors of its features, a row each; it may have none. Positions
   // count from 0.
   void append(const cv::Mat& descriptors);
+  // All views: positions count from 0 again, words are as rare as in the training images.
+  void forget() { *this = WordIndex(vocabulary_); }
   int num_views() const { return static_cast<int>(num_features_.size()); }
 
   // The views of positions 0 .. num_allowed - 1 that anything votes for, in the order of positions.

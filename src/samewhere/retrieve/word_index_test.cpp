@@ -57,6 +57,18 @@ TEST_F(Words, OnlyAllowedViewsAreFound) {
   EXPECT_TRUE(index.search({}, 2).empty());
 }
 
+TEST_F(Words, ForgottenViewsAreNotFoundAndPositionsCountFromZeroAgain) {
+  WordIndex index(vocabulary_);
+  for (int i = 0; i < 3; ++i) index.append(view_of({5, 6, 7}));
+  index.forget();
+  EXPECT_EQ(index.num_views(), 0);
+  EXPECT_TRUE(index.search(view_of({5, 6, 7}), 3).empty());
+  index.append(view_of({5, 6, 7}));
+  const auto scored = index.search(view_of({5, 6, 7}), 1);
+  ASSERT_EQ(scored.size(), 1U);
+  EXPECT_EQ(scored[0].position, 0);
+}
+
 // Every view of this building has the same door (0, 1, 2): the one poster (50) decides.
 TEST_F(Words, WhatEveryPlaceShowsHardlyCounts) {
   WordIndex index(vocabulary_);
