@@ -20,7 +20,7 @@ constexpr std::uint64_t kTrueCause = 1'000'000;              // above the ids of
 const pipeline::FindLoops* without_accepted_loops(const pipeline::ToLoopClosing& question,
                                                   pipeline::LoopAnswer& answer) {
   const auto* asked = std::get_if<pipeline::FindLoops>(&question);
-  if (asked != nullptr) answer.loops.clear();
+  answer.loops.clear();
   return asked;
 }
 

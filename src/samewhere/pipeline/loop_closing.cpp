@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <samewhere/core/match_from_query.hpp>
@@ -6,6 +7,7 @@
 #include <samewhere/report/jpeg.hpp>
 #include <samewhere/verify/decide.hpp>
 #include <samewhere/verify/measure_competing.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -21,11 +23,32 @@ AcceptedLoop accepted_loop(const MapVersionContext& context, const scene::MapVer
           .match_log_scale = map.at(edge.match).log_scale};
 }
 
+std::vector<AcceptedLoop> accepted_loops(const MapVersionContext& context,
+                                         const scene::MapVersion& map, const core::Ledger& rows) {
+  std::vector<AcceptedLoop> loops;
+  for (const core::LedgerRow& row : rows) {
+    const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
+    if (loop != nullptr && loop->match_from_query)
+      loops.push_back(accepted_loop(context, map, row, *loop));
+  }
+  return loops;
+}
+
+// A keyframe of a map that was given up shows nothing of this one.
+bool shows_landmarks(const scene::MapVersion& map, core::KeyframeId keyframe) {
+  const auto& slots = map.at(holder_of(map, keyframe).keyframe).slots;
+  return std::ranges::any_of(slots, [&](core::LandmarkId landmark) {
+    return landmark.is_valid() && !survivor_of(map, landmark).is_culled;
+  });
+}
+
 }  // namespace
 
 core::Verdict reverify(const scene::MapVersion& map, const scene::LoopEdge& loop,
                        const core::LedgerRow& accepted, const Config& config) {
   core::Evidence evidence = core::evidence_of(accepted.verdict);
+  if (evidence.odometry)
+    evidence.odometry = verify::measure_odometry(map, loop, scale_errors(config), config.verify);
   evidence.competing_loop =
       verify::measure_competing_loop(map, loop, scale_errors(config), config.verify);
   return verify::decide(accepted.candidate, evidence, {}, config.verify);
@@ -40,7 +63,7 @@ LoopClosing::LoopClosing(const Config& config, const scene::StoredMap& known)
     keyframe_of_[known.map.keyframes[i].view.frame] = known.map.keyframes[i].id;
   for (const auto& descriptor : known.extras.descriptors) {
     const auto keyframe = keyframe_of_.find(descriptor.frame);
-    if (keyframe != keyframe_of_.end())
+    if (keyframe != keyframe_of_.end() && shows_landmarks(known.map, keyframe->second))
       detector_.remember(descriptor, known.map.at(keyframe->second).view);
   }
 }
@@ -53,6 +76,7 @@ LoopAnswer LoopClosing::answer(const ToLoopClosing& message) {
 }
 
 LoopAnswer LoopClosing::answer(const FindLoops& question) {
+  if (question.starts_map) detector_.forget();
   if (question.image.empty()) return {};
   const scene::MapVersion& map = question.map;
   const features::View& view = map.at(question.keyframe).view;
@@ -69,11 +93,7 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
   }
   const MapVersionContext context(map, keyframe_of_, view.frame, config_);
   answer.rows = detector_.detect(question.image, view, context, timings_);
-  for (const auto& row : answer.rows) {
-    const auto* loop = std::get_if<core::LoopClosure>(&row.verdict);
-    if (loop != nullptr && loop->match_from_query)
-      answer.loops.push_back(accepted_loop(context, map, row, *loop));
-  }
+  answer.loops = accepted_loops(context, map, answer.rows);
   const PlaceIndex& index = detector_.index();
   answer.descriptor = index.descriptor(index.num_descriptors() - 1);
   return answer;
@@ -92,6 +112,15 @@ LoopAnswer LoopClosing::answer(const FindPlace& question) {
       place.keyframe_from_body = rigid_part(*geometry->match_from_query);
     answer.places.push_back(place);
   }
+  return answer;
+}
+
+LoopAnswer LoopClosing::answer(const AskAgain& question) {
+  const scene::MapVersion& map = question.map;
+  const MapVersionContext context(map, keyframe_of_, map.keyframes.back().view.frame, config_);
+  LoopAnswer answer{.map_number = map.number};
+  answer.rows = detector_.ask_again(context, timings_);
+  answer.loops = accepted_loops(context, map, answer.rows);
   return answer;
 }
 

@@ -32,6 +32,7 @@ class LoopClosing {
   LoopAnswer answer(const FindLoops& question);
   // The places of the whole map that the view may show.
   LoopAnswer answer(const FindPlace& question);
+  LoopAnswer answer(const AskAgain& question);
 
   Config config_;
   core::Timings timings_;

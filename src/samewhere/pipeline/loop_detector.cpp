@@ -6,20 +6,15 @@
 #include <samewhere/pipeline/verifier_settings.hpp>
 
 namespace samewhere::pipeline {
-namespace {
-
-std::uint64_t window_frames_of(const Config& config) {
-  return static_cast<std::uint64_t>(config.retrieve.window_frames);
-}
-
-}  // namespace
 
 LoopDetector::LoopDetector(const Config& config, const verify::VerifierSettings& settings)
-    : index_(config),
+    : settings_(settings),
+      window_frames_(static_cast<std::uint64_t>(config.retrieve.window_frames)),
+      index_(config),
       verifier_(settings),
       relocalization_verifier_(relocalization_settings(config)),
-      sequences_(settings.measure, window_frames_of(config)),
-      neighbours_(window_frames_of(config)),
+      sequences_(settings.measure, window_frames_),
+      neighbours_(window_frames_),
       waiting_(verifier_) {}
 
 std::vector<core::LedgerRow> LoopDetector::detect(const cv::Mat& image, const features::View& view,
@@ -59,6 +54,22 @@ void LoopDetector::remember(const core::Descriptor& descriptor, const features::
   views_.emplace(view.frame, view);
 }
 
+std::vector<core::LedgerRow> LoopDetector::ask_again(const verify::MapContext& map,
+                                                     core::Timings& timings) {
+  const core::ScopedTimer timer(timings, "verify");
+  auto decided = waiting_.ask_again(map, waiting_.size());
+  for (const core::LedgerRow& row : decided) record(row);
+  return decided;
+}
+
+void LoopDetector::forget() {
+  index_.forget();
+  sequences_ = verify::SequenceVerifier(settings_.measure, window_frames_);
+  neighbours_ = verify::Neighbours(window_frames_);
+  waiting_ = verify::WaitingCandidates(verifier_);
+  views_.clear();
+}
+
 std::vector<core::LedgerRow> LoopDetector::verify(const core::Descriptor& descriptor,
                                                   const std::vector<core::Candidate>& candidates,
                                                   const features::View& view,
@@ -74,7 +85,7 @@ std::vector<core::LedgerRow> LoopDetector::verify(const core::Descriptor& descri
     rows.push_back(verify_candidate(candidate, views_.at(candidate.query), map));
   auto settled = sequences_.settle(view.frame);
   for (const core::LedgerRow& row : settled) record(row);
-  auto decided = waiting_.ask_again(map);
+  auto decided = waiting_.ask_again(map, verifier_.config().asked_again_per_keyframe);
   for (const core::LedgerRow& row : decided) record(row);
   waiting_.add(rows);
   std::move(settled.begin(), settled.end(), std::back_inserter(rows));

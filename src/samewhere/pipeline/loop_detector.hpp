@@ -45,6 +45,14 @@ class LoopDetector {
                                       const std::vector<core::Candidate>& candidates,
                                       const features::View& view, const verify::MapContext& map);
 
+  // All candidates that wait are decided again by the loops of this map, whatever
+  // verify.asked_again_per_keyframe allows: verdicts that have changed. Step "verify" of the
+  // timings.
+  std::vector<core::LedgerRow> ask_again(const verify::MapContext& map, core::Timings& timings);
+
+  // The map was given up: nothing of its views is found, predicted or decided any more.
+  void forget();
+
   // The input has ended: the last verdicts on pending candidates.
   std::vector<core::LedgerRow> settle_all() { return sequences_.settle_all(); }
 
@@ -61,6 +69,8 @@ class LoopDetector {
   void record(const core::LedgerRow& row);
   core::CandidateId next_id(const features::View& view);
 
+  verify::VerifierSettings settings_;
+  std::uint64_t window_frames_;
   PlaceIndex index_;
   verify::LoopVerifier verifier_;
   verify::LoopVerifier relocalization_verifier_;

@@ -44,7 +44,7 @@ void Mapping::take(const StartMap& message, const MappingLink::Reply& reply) {
   map_.has_metric_odometry = config_.odometry.is_used();
   apply(map::start_map(map_, message.view, core::Rigid3{}));
   reply(newest_answer());
-  ask_for_loops(message.image);
+  ask_for_loops(message.image, true);
   keep_map();
 }
 
@@ -54,7 +54,7 @@ void Mapping::take(const StartMapByMotion& message, const MappingLink::Reply& re
   connect_newest();
   refine_newest();
   reply(newest_answer());
-  ask_for_loops(message.image);
+  ask_for_loops(message.image, true);
   keep_map();
 }
 
@@ -92,6 +92,7 @@ void Mapping::take(const SaveFrames& message, const MappingLink::Reply& /*reply*
 
 void Mapping::take(const EndOfInput& message, const MappingLink::Reply& /*reply*/) {
   hear_loops(0);
+  close_waiting_loops();
   if (const auto found = full_bundles_.last(map_)) apply(*found);
   add_frames(message.frames);
   keep_map();
@@ -124,9 +125,19 @@ void Mapping::refine_newest() {
   apply(map::cull_around(map_, newest, config_.map, config_.features));
 }
 
-void Mapping::ask_for_loops(const cv::Mat& image) {
-  loops_.send(FindLoops{map_, map_.keyframes.back().id, image});
+void Mapping::ask_for_loops(const cv::Mat& image, bool starts_map) {
+  loops_.send(FindLoops{map_, map_.keyframes.back().id, image, starts_map});
   ++num_unheard_;
+}
+
+void Mapping::close_waiting_loops() {
+  if (!config_.close_loops || map_.keyframes.empty()) return;
+  for (std::size_t num_known = 0; num_known != accepted_.size();) {
+    num_known = accepted_.size();
+    loops_.send(AskAgain{map_});
+    ++num_unheard_;
+    hear_loops(0);
+  }
 }
 
 bool Mapping::hear_loops(int max_unheard) {

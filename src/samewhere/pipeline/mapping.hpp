@@ -49,7 +49,9 @@ class Mapping {
   // Better poses and points around the newest keyframe; then what proved to be no good goes.
   void refine_newest();
   // Have I seen this place before? The answer is heard later.
-  void ask_for_loops(const cv::Mat& image);
+  void ask_for_loops(const cv::Mat& image, bool starts_map = false);
+  // What the loops of the map decide of the candidates that wait, until they decide no more.
+  void close_waiting_loops();
   // Loop closing's answers until so few are still to come; each corrects the past. Whether places
   // that were one were parted.
   bool hear_loops(int max_unheard);

@@ -84,10 +84,17 @@ struct MapAnswer {
 struct FindLoops {
   scene::MapVersion map;
   core::KeyframeId keyframe;
-  cv::Mat image;  // empty: not looked for
+  cv::Mat image;            // empty: not looked for
+  bool starts_map = false;  // the map before it was given up: its views are forgotten
 };
 
-using ToLoopClosing = std::variant<FindLoops, FindPlace>;
+// The input has ended: which of the candidates that wait do the loops of the map decide? Answered
+// once, maybe with nothing.
+struct AskAgain {
+  scene::MapVersion map;
+};
+
+using ToLoopClosing = std::variant<FindLoops, FindPlace, AskAgain>;
 
 // --- Loop closing to mapping.
 

@@ -37,7 +37,7 @@ void WaitingCandidates::add(const std::vector<core::LedgerRow>& rows) {
     if (is_worth_waiting(row)) waiting_.push_back({row, competitor_of(row, rows), num_changes_});
 }
 
-std::vector<core::LedgerRow> WaitingCandidates::ask_again(const MapContext& map) {
+std::vector<core::LedgerRow> WaitingCandidates::ask_again(const MapContext& map, int max_asked) {
   std::vector<core::CandidateId> loops = map.loops();
   if (loops != loops_) {
     loops_ = std::move(loops);
@@ -46,7 +46,7 @@ std::vector<core::LedgerRow> WaitingCandidates::ask_again(const MapContext& map)
   std::vector<core::LedgerRow> changed;
   int num_asked = 0;
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
-    if (num_asked == verifier_.config().asked_again_per_keyframe) break;
+    if (num_asked == max_asked) break;
     next_ = next_ + 1 < waiting_.size() ? next_ + 1 : 0;
     Waiting& waiting = waiting_[next_];
     if (waiting.asked_at == num_changes_) continue;

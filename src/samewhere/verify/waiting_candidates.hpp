@@ -22,9 +22,11 @@ class WaitingCandidates {
   // Rows of one query. Those that wait are kept, with their competitors among the rows.
   void add(const std::vector<core::LedgerRow>& rows);
 
-  // Verdicts that have changed, of at most verify.asked_again_per_keyframe candidates: those that
-  // have waited longest since they were asked last, once for each change of the map's loops.
-  std::vector<core::LedgerRow> ask_again(const MapContext& map);
+  int size() const { return static_cast<int>(waiting_.size()); }
+
+  // Verdicts that have changed, of at most `max_asked` candidates: those that have waited longest
+  // since they were asked last, once for each change of the map's loops.
+  std::vector<core::LedgerRow> ask_again(const MapContext& map, int max_asked);
 
  private:
   struct Waiting {

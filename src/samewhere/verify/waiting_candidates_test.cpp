@@ -48,6 +48,11 @@ class Waiting : public testing::Test {
     return {candidate, verifier_.decide(candidate, evidence, {})};
   }
 
+  // As with each keyframe.
+  std::vector<core::LedgerRow> asked_again() {
+    return waiting_.ask_again(map_, verifier_.config().asked_again_per_keyframe);
+  }
+
   LoopVerifier verifier_{VerifierSettings{}};
   MapWithLoops map_;
   WaitingCandidates waiting_{verifier_};
@@ -59,15 +64,15 @@ TEST_F(Waiting, BecomesALoopOnceOtherLoopsTellItsPlaceFromALookAlike) {
   const core::LedgerRow row = row_of(50, 3);
   ASSERT_EQ(core::stage_of(row.verdict), "evidence");
   waiting_.add({row});
-  EXPECT_TRUE(waiting_.ask_again(map_).empty()) << "nothing has changed";
+  EXPECT_TRUE(asked_again().empty()) << "nothing has changed";
   map_.closed = {core::CandidateId(7)};
   map_.odometry[core::FrameId(3)] = kTold;
-  const auto decided = waiting_.ask_again(map_);
+  const auto decided = asked_again();
   ASSERT_EQ(decided.size(), 1U);
   EXPECT_TRUE(core::is_loop(decided[0].verdict));
   EXPECT_EQ(decided[0].candidate.id, row.candidate.id);
   map_.closed.emplace_back(8);
-  EXPECT_TRUE(waiting_.ask_again(map_).empty()) << "decided once";
+  EXPECT_TRUE(asked_again().empty()) << "decided once";
 }
 
 TEST_F(Waiting, IsRejectedByLoopsAndBecomesALoopAfterTheirWithdrawal) {
@@ -75,13 +80,13 @@ TEST_F(Waiting, IsRejectedByLoopsAndBecomesALoopAfterTheirWithdrawal) {
   waiting_.add({row_of(50, 3)});
   map_.closed = {core::CandidateId(7)};
   map_.odometry[core::FrameId(3)] = kContradicted;
-  const auto rejected = waiting_.ask_again(map_);
+  const auto rejected = asked_again();
   ASSERT_EQ(rejected.size(), 1U);
   EXPECT_EQ(core::name_of(rejected[0].verdict), "NOT");
   EXPECT_EQ(core::stage_of(rejected[0].verdict), "competing");
   map_.closed = {core::CandidateId(9)};
   map_.odometry[core::FrameId(3)] = kTold;
-  const auto accepted = waiting_.ask_again(map_);
+  const auto accepted = asked_again();
   ASSERT_EQ(accepted.size(), 1U);
   EXPECT_TRUE(core::is_loop(accepted[0].verdict));
 }
@@ -98,10 +103,10 @@ TEST_F(Waiting, TwoPlacesOfOneViewAreDecidedWhenLoopsRuleOneOut) {
   ASSERT_EQ(core::stage_of(here.verdict), "competing");
   waiting_.add({here, there});
   map_.closed = {core::CandidateId(7)};
-  EXPECT_TRUE(waiting_.ask_again(map_).empty()) << "both are still possible";
+  EXPECT_TRUE(asked_again().empty()) << "both are still possible";
   map_.closed = {core::CandidateId(8)};
   map_.odometry[core::FrameId(20)] = kContradicted;
-  const auto decided = waiting_.ask_again(map_);
+  const auto decided = asked_again();
   ASSERT_EQ(decided.size(), 1U);
   EXPECT_TRUE(core::is_loop(decided[0].verdict));
   EXPECT_EQ(decided[0].candidate.match, core::FrameId(3));
@@ -117,10 +122,23 @@ TEST_F(Waiting, EachIsAskedOncePerChangeAndSoManyAtATime) {
   waiting_.add(rows);
   map_.closed = {core::CandidateId(7)};
   for (auto& [match, odometry] : map_.odometry) odometry = kTold;
-  EXPECT_EQ(std::ssize(waiting_.ask_again(map_)), num_each);
-  EXPECT_EQ(std::ssize(waiting_.ask_again(map_)), num_each);
-  EXPECT_EQ(std::ssize(waiting_.ask_again(map_)), 3);
-  EXPECT_TRUE(waiting_.ask_again(map_).empty());
+  EXPECT_EQ(std::ssize(asked_again()), num_each);
+  EXPECT_EQ(std::ssize(asked_again()), num_each);
+  EXPECT_EQ(std::ssize(asked_again()), 3);
+  EXPECT_TRUE(asked_again().empty());
+}
+
+TEST_F(Waiting, AllAreAskedAtTheEnd) {
+  std::vector<core::LedgerRow> rows;
+  for (int i = 0; i < 3 * verifier_.config().asked_again_per_keyframe; ++i) {
+    map_.odometry[core::FrameId(static_cast<std::uint64_t>(i))] = kUncertain;
+    rows.push_back(row_of(100, i));
+  }
+  waiting_.add(rows);
+  map_.closed = {core::CandidateId(7)};
+  for (auto& [match, odometry] : map_.odometry) odometry = kTold;
+  EXPECT_EQ(waiting_.ask_again(map_, waiting_.size()).size(), rows.size());
+  EXPECT_EQ(waiting_.size(), 0);
 }
 
 TEST_F(Waiting, ARelocalizationDoesNotWait) {
@@ -130,7 +148,7 @@ TEST_F(Waiting, ARelocalizationDoesNotWait) {
   waiting_.add({row});
   map_.closed = {core::CandidateId(7)};
   map_.odometry[core::FrameId(3)] = kTold;
-  EXPECT_TRUE(waiting_.ask_again(map_).empty());
+  EXPECT_TRUE(asked_again().empty());
 }
 
 }  // namespace
