@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <samewhere/core/checksum.hpp>
 #include <samewhere/core/ordered_workers.hpp>
+#include <samewhere/core/tum_file.hpp>
 #include <samewhere/twin/front/studio.hpp>
 #include <samewhere/twin/front/twin.hpp>
 #include <samewhere/twin/render/picture_cache.hpp>
@@ -15,8 +17,10 @@ namespace {
 
 PictureCache cache_for(const Walkthrough& walk, const Config& config) {
   // whatever is built from other sources may render otherwise
-  const std::string key =
+  std::string key =
       fmt::format("{} pictures of build {}", canonical_text(walk.spec()), source_hash());
+  if (!config.shake.empty())
+    key += fmt::format(" moved as {:016x}", core::checksum(core::tum_text(walk.walk().poses)));
   // ideal depth is not in the units that the cache keeps
   return config.ideal_depth ? PictureCache(key, std::nullopt) : PictureCache(key);
 }

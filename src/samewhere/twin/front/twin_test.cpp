@@ -1,9 +1,13 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/features2d.hpp>
 
@@ -145,6 +149,23 @@ TEST(Twin, TheSettingsSayHowManyThreads) {
 }
 
 TEST(Twin, ABadSpecIsRefused) { EXPECT_THROW(open_twin("twin:castle", {}), core::InputError); }
+
+TEST(Twin, ARecordedMotionThatIsNoneIsRefusedByNameOfItsFile) {
+  const std::string file = testing::TempDir() + "samewhere_recorded_walk.tum";
+  std::filesystem::remove(file);
+  const auto refusal = [&] {
+    try {
+      open_twin("twin:office-loop?seed=3", {.shake = file, .num_frames = 3});
+    } catch (const core::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal(), testing::HasSubstr(file)) << "there is none";
+  std::ofstream(file) << "1.0 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(refusal(),
+            "twin.shake: " + file + ": found 1 poses over 0.0 s, expected 10 s at least");
+}
 
 TEST(Twin, TheCamerasDistortionCanBeUndone) {
   const core::Camera camera = kTwinCamera;

@@ -6,6 +6,7 @@
 #include <samewhere/core/interrupt.hpp>
 #include <samewhere/core/progress.hpp>
 #include <samewhere/core/random.hpp>
+#include <samewhere/core/tum_file.hpp>
 #include <samewhere/twin/front/camera.hpp>
 #include <samewhere/twin/front/walkthrough.hpp>
 #include <samewhere/twin/motion/inertial.hpp>
@@ -44,9 +45,21 @@ Walk walk_of(const Motion& motion, int num_frames) {
   return walk;
 }
 
-Motion motion_through(const World& world, const Spec& spec) {
+RecordedShake recorded_shake(const std::string& file) {
+  if (file.empty()) return {};
+  try {
+    return RecordedShake(core::read_tum(file));
+  } catch (const core::InputError& error) {
+    const std::string_view reason = error.what();
+    throw core::InputError(reason.find(file) == std::string_view::npos
+                               ? fmt::format("twin.shake: {}: {}", file, reason)
+                               : fmt::format("twin.shake: {}", reason));
+  }
+}
+
+Motion motion_through(const World& world, const Spec& spec, const RecordedShake& recorded) {
   const std::uint64_t seed = core::seed_of(spec.seed, "twin.motion", 0);
-  if (spec.stray_m == 0.0) return {world.route, seed};
+  if (spec.stray_m == 0.0) return {world.route, seed, {}, recorded};
   std::vector<RayScene> visits;
   for (const auto& building : world.visits) visits.emplace_back(building.rectangles);
   const Room room_m = [&](const Eigen::Vector3d& floor_m, double heading_rad) {
@@ -55,7 +68,7 @@ Motion motion_through(const World& world, const Spec& spec) {
       least_m = std::min(least_m, room_in(rays, floor_m, heading_rad, spec.stray_m));
     return least_m;
   };
-  return {world.route, seed, {.most_m = spec.stray_m, .room_m = room_m}};
+  return {world.route, seed, {.most_m = spec.stray_m, .room_m = room_m}, recorded};
 }
 
 std::uint64_t imu_seed(const Spec& spec) { return core::seed_of(spec.seed, "twin.imu", 0); }
@@ -72,7 +85,7 @@ Walkthrough::Walkthrough(const Spec& spec, const Config& config)
     : spec_(require_renderer(spec)),
       name_(fmt::format("{}-seed{}", spec.preset, spec.seed)),
       world_(build_world(spec)),
-      motion_(motion_through(world_, spec)),
+      motion_(motion_through(world_, spec, recorded_shake(config.shake))),
       rig_(rig_for(spec)),
       walk_(walk_of(motion_, config.num_frames)),
       people_(people_in(world_, spec)),

@@ -5,6 +5,7 @@
 #include <samewhere/core/errors.hpp>
 #include <samewhere/core/random.hpp>
 #include <samewhere/twin/motion/motion.hpp>
+#include <samewhere/twin/motion/spline.hpp>
 
 namespace samewhere::twin {
 namespace {
@@ -18,18 +19,6 @@ Eigen::Quaterniond level_rotation(double yaw_rad) {
   world_from_level.col(1) = -Eigen::Vector3d::UnitZ();
   world_from_level.col(2) = Eigen::Vector3d(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
   return Eigen::Quaterniond(world_from_level);
-}
-
-// Weights of the four control points of a uniform cubic B-spline around the place `u` in [0, 1]
-// between the second and the third; row k for the k-th derivative by u.
-Eigen::Matrix<double, 3, 4> spline_weights(double u) {
-  const double v = 1.0 - u;
-  Eigen::Matrix<double, 3, 4> weights;
-  weights << v * v * v / 6.0, (3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0,
-      (3.0 * v * v * v - 6.0 * v * v + 4.0) / 6.0, u * u * u / 6.0,              //
-      -0.5 * v * v, 1.5 * u * u - 2.0 * u, -1.5 * v * v + 2.0 * v, 0.5 * u * u,  //
-      v, 3.0 * u - 2.0, 3.0 * v - 2.0, u;
-  return weights;
 }
 
 }  // namespace
@@ -49,7 +38,8 @@ struct Motion::Angles {
   Jet yaw, pitch, roll;
 };
 
-Motion::Motion(const Route& route, std::uint64_t seed, const Stray& stray)
+Motion::Motion(const Route& route, std::uint64_t seed, const Stray& stray,
+               const RecordedShake& recorded)
     : carrier_(route.carrier),
       camera_height_m_(route.camera_height_m),
       look_aside_rad_(route.look_aside_rad) {
@@ -58,10 +48,19 @@ Motion::Motion(const Route& route, std::uint64_t seed, const Stray& stray)
   core::Random random(core::seed_of(seed, "twin.motion", 0));
   shake_ = camera_shake(route.carrier, random);
   drive_ = drive_along(route, random);
+  if (!recorded.is_empty() && route.carrier == Carrier::kWalker) take_over(recorded, seed);
   if (stray.most_m <= 0.0 || route.carrier != Carrier::kWalker) return;
   core::Random astray(core::seed_of(seed, "twin.stray", 0));
   hold_elsewhere(stray.most_m, astray, shake_);
   step_aside(stray, astray, drive_);
+}
+
+// In place of the made-up steps and looks, from a moment on that the seed chooses.
+void Motion::take_over(const RecordedShake& recorded, std::uint64_t seed) {
+  shake_ = {.mean_pitch_rad = shake_.mean_pitch_rad, .slope_share = shake_.slope_share};
+  recorded_ = recorded;
+  core::Random random(core::seed_of(seed, "twin.recorded", 0));
+  recorded_from_s_ = random.uniform(0.0, recorded.duration_s());
 }
 
 core::Rigid3 Motion::world_from_body(double stamp_s) const {
@@ -145,32 +144,35 @@ Motion::Carried Motion::carried_at(double stamp_s) const {
 Motion::Position Motion::position_at(double stamp_s) const {
   const Carried carried = carried_at(stamp_s);
   const Jet moving = carried[kDriveMoving];
-  const Jet forward = moving * sum_at(shake_.forward_m, stamp_s);
-  const Jet left = moving * sum_at(shake_.left_m, stamp_s);
+  const auto recorded = recorded_.at(recorded_from_s_ + stamp_s);
+  const Jet forward = moving * (sum_at(shake_.forward_m, stamp_s) + recorded[kShakeForward]);
+  const Jet left = moving * (sum_at(shake_.left_m, stamp_s) + recorded[kShakeLeft]);
+  const Jet up = moving * (sum_at(shake_.up_m, stamp_s) + recorded[kShakeUp]);
   const Jet cosine = cos(carried[kDriveHeading]);
   const Jet sine = sin(carried[kDriveHeading]);
   return {carried[kDriveX] + forward * cosine + -1.0 * (left * sine),
           carried[kDriveY] + forward * sine + left * cosine,
-          carried[kDriveZ] + moving * sum_at(shake_.up_m, stamp_s) + Jet{camera_height_m_}};
+          carried[kDriveZ] + up + Jet{camera_height_m_}};
 }
 
 Motion::Angles Motion::angles_at(double stamp_s) const {
   const Carried carried = carried_at(stamp_s);
   const Jet moving = carried[kDriveMoving];
   const Jet looking = Jet{kStandingShare} + (1.0 - kStandingShare) * moving;
-  const auto shaken = [&](const Waves& look, const Waves& shake) {
-    return looking * sum_at(look, stamp_s) + moving * sum_at(shake, stamp_s);
+  const auto recorded = recorded_.at(recorded_from_s_ + stamp_s);
+  const auto shaken = [&](const Waves& look, const Waves& shake, ShakeChannel channel) {
+    return looking * (sum_at(look, stamp_s) + recorded[channel]) + moving * sum_at(shake, stamp_s);
   };
   // one swing in nine metres, of the place, not of the time; the same wall is seen on the way back
   constexpr double kSwingX_rad_m = 0.7;
   constexpr double kSwingY_rad_m = 0.55;
   const Jet way = cos(carried[kDriveHeading]) + sin(carried[kDriveHeading]);
   const Jet swing = way * sin(kSwingX_rad_m * carried[kDriveX] + kSwingY_rad_m * carried[kDriveY]);
-  return {
-      carried[kDriveLook] + look_aside_rad_ * swing + shaken(shake_.look_yaw_rad, shake_.yaw_rad),
-      Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +
-          shaken(shake_.look_pitch_rad, shake_.pitch_rad),
-      shaken(shake_.look_roll_rad, shake_.roll_rad)};
+  return {carried[kDriveLook] + look_aside_rad_ * swing +
+              shaken(shake_.look_yaw_rad, shake_.yaw_rad, kShakeYaw),
+          Jet{shake_.mean_pitch_rad} + shake_.slope_share * carried[kDriveSlope] +
+              shaken(shake_.look_pitch_rad, shake_.pitch_rad, kShakePitch),
+          shaken(shake_.look_roll_rad, shake_.roll_rad, kShakeRoll)};
 }
 
 }  // namespace samewhere::twin

@@ -6,6 +6,7 @@
 #include <samewhere/core/truth.hpp>
 #include <samewhere/twin/building/route.hpp>
 #include <samewhere/twin/motion/drive.hpp>
+#include <samewhere/twin/motion/recorded_shake.hpp>
 #include <samewhere/twin/motion/shake.hpp>
 #include <samewhere/twin/motion/stray.hpp>
 
@@ -18,12 +19,13 @@ namespace samewhere::twin {
 // The carrier's way (drive.hpp) is sampled every 0.1 s and taken as the control points of a uniform
 // cubic B-spline in time; the camera shakes on it (shake.hpp). The camera stays within
 // kMostFromRoute_m + 0.03 m of the route's lines, seen from above, and as much further as it strays
-// (stray.hpp; a robot does not). The same route and seed give the same motion, bit for bit; another
-// seed another pace, drift and shake.
+// (stray.hpp; a robot does not) or is shaken (recorded_shake.hpp; a robot is not). The same route
+// and seed give the same motion, bit for bit; another seed another pace, drift and shake.
 class Motion {
  public:
   // Throws ContractError for a route that cannot be walked (drive.hpp).
-  Motion(const Route& route, std::uint64_t seed, const Stray& stray = {});
+  Motion(const Route& route, std::uint64_t seed, const Stray& stray = {},
+         const RecordedShake& recorded = {});
 
   Carrier carrier() const { return carrier_; }
   double duration_s() const { return drive_.duration_s; }
@@ -47,6 +49,7 @@ class Motion {
   struct Position;
   struct Angles;
 
+  void take_over(const RecordedShake& recorded, std::uint64_t seed);
   Carried carried_at(double stamp_s) const;
   Position position_at(double stamp_s) const;
   Angles angles_at(double stamp_s) const;
@@ -55,6 +58,8 @@ class Motion {
   double camera_height_m_;
   double look_aside_rad_ = 0.0;
   CameraShake shake_;
+  RecordedShake recorded_;
+  double recorded_from_s_ = 0.0;
   Drive drive_;
 };
 
