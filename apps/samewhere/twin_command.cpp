@@ -219,6 +219,7 @@ void add_twin_command(CLI::App& app) {
       "Keys of twin:PRESET?KEY=VALUE&KEY=VALUE: seed; similarity, 0 to 1; speed, 0.5 to 2; people, "
       "0 to 30;\n"
       "stray, 0 to 1: lateral deviation of the path in m, with camera shake;\n"
+      "copy, 0 to 1000: another building of the same design, with its own small things;\n"
       "camera: rgbd, stereo or mono.\n\n"
       "Examples:\n"
       "  samewhere twin --list\n"

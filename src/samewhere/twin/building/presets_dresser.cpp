@@ -18,9 +18,12 @@ int kind_of(const Draft& draft, int unit) {
 
 // Colours are common to the whole building.
 Style style_of(const Draft& draft, int unit) {
+  constexpr std::uint64_t kUnitsOfACopy = 1'000'000;
   const Spec& spec = draft.spec;
+  const auto thing =
+      static_cast<std::uint64_t>(spec.copy) * kUnitsOfACopy + 1 + static_cast<std::uint64_t>(unit);
   return {.common_seed = core::seed_of(spec.seed, spec.preset, 0),
-          .own_seed = core::seed_of(spec.seed, spec.preset, 1 + static_cast<std::uint64_t>(unit)),
+          .own_seed = core::seed_of(spec.seed, spec.preset, thing),
           .similarity = spec.similarity,
           .visit = draft.visit.index};
 }

@@ -60,25 +60,48 @@ struct Likeness {
   double colour_difference = 0.0;  // mean of the largest channel
 };
 
-// Of all units with an elder of their kind.
-Likeness likeness_of(const Building& building) {
-  const UnitEyes eyes(building);
-  std::map<int, int> first_of_kind;
-  double num = 0.0;
-  Likeness sum;
-  for (int unit = 0; unit < static_cast<int>(building.units.size()); ++unit) {
-    const auto [first, is_first] = first_of_kind.try_emplace(eyes.unit_of(unit).kind, unit);
-    if (is_first) continue;
+// Mean over rays of pairs of units, one of each building.
+class Comparison {
+ public:
+  Comparison(const Building& a, const Building& b) : a_(a), b_(b) {}
+
+  void add(int unit_of_a, int unit_of_b) {
     for (std::uint64_t k = 0; k < 300; ++k) {
-      const Glance a = eyes.glance(first->second, k);
-      const Glance b = eyes.glance(unit, k);
+      const Glance a = a_.glance(unit_of_a, k);
+      const Glance b = b_.glance(unit_of_b, k);
       if (!a.is_inside || !b.is_inside) continue;
-      num += 1.0;
-      sum.same_distance += std::abs(a.distance_m - b.distance_m) < 0.01F ? 1.0 : 0.0;
-      sum.colour_difference += static_cast<double>((a.colour - b.colour).abs().maxCoeff());
+      num_ += 1.0;
+      sum_.same_distance += std::abs(a.distance_m - b.distance_m) < 0.01F ? 1.0 : 0.0;
+      sum_.colour_difference += static_cast<double>((a.colour - b.colour).abs().maxCoeff());
     }
   }
-  return {sum.same_distance / num, sum.colour_difference / num};
+
+  Likeness mean() const { return {sum_.same_distance / num_, sum_.colour_difference / num_}; }
+
+ private:
+  UnitEyes a_;
+  UnitEyes b_;
+  Likeness sum_;
+  double num_ = 0.0;
+};
+
+// Of all units with an elder of their kind.
+Likeness likeness_of(const Building& building) {
+  Comparison comparison(building, building);
+  std::map<int, int> first_of_kind;
+  for (int unit = 0; unit < static_cast<int>(building.units.size()); ++unit) {
+    const int kind = building.units[static_cast<std::size_t>(unit)].kind;
+    const auto [first, is_first] = first_of_kind.try_emplace(kind, unit);
+    if (!is_first) comparison.add(first->second, unit);
+  }
+  return comparison.mean();
+}
+
+// Of each unit with the same of the other building.
+Likeness likeness_of(const Building& a, const Building& b) {
+  Comparison comparison(a, b);
+  for (int unit = 0; unit < static_cast<int>(a.units.size()); ++unit) comparison.add(unit, unit);
+  return comparison.mean();
 }
 
 class PresetWithTwins : public testing::TestWithParam<std::string> {};
@@ -96,6 +119,21 @@ TEST_P(PresetWithTwins, TwinsAreBuiltAlikeAndLookAsAlikeAsSimilaritySays) {
   const Likeness apart = likeness(0.0);
   EXPECT_GT(apart.colour_difference, 2.0 * usual.colour_difference);
   EXPECT_LT(apart.same_distance, usual.same_distance);
+}
+
+TEST_P(PresetWithTwins, AnotherBuildingOfTheSameDesignIsAsAlikeAsTwinsAre) {
+  const auto likeness = [&](double similarity) {
+    Spec spec = spec_of(GetParam(), 3, similarity);
+    const World first = build_world(spec);
+    spec.copy = 1;
+    return likeness_of(first.visits[0], build_world(spec).visits[0]);
+  };
+  const Likeness alike = likeness(1.0);
+  EXPECT_GT(alike.same_distance, 0.99);
+  EXPECT_LT(alike.colour_difference, 0.02);
+  const Likeness usual = likeness(0.8);
+  EXPECT_LT(usual.colour_difference, 0.06);
+  EXPECT_GT(likeness(0.0).colour_difference, 2.0 * usual.colour_difference);
 }
 
 INSTANTIATE_TEST_SUITE_P(Twins, PresetWithTwins,

@@ -79,10 +79,12 @@ void apply(const Setting& setting, Spec& spec) {
     spec.stray_m = number(setting, 0.0, 1.0, "a number in [0, 1]");
   } else if (setting.key == "camera") {
     spec.sensors = sensors_of(setting);
+  } else if (setting.key == "copy") {
+    spec.copy = number(setting, 0, 1000, "a whole number in [0, 1000]");
   } else {
     throw core::InputError(
         fmt::format("{}: unknown key {}; expected one of: seed, similarity, speed, people, stray, "
-                    "camera",
+                    "camera, copy",
                     setting.spec, setting.key));
   }
 }
@@ -134,11 +136,12 @@ std::string canonical_text(const Spec& spec) {
   for (const auto& [name, sensors] : kSensors) {
     if (spec.sensors == sensors) camera = name;
   }
-  // not named without lateral offset: texts, and what is kept under them, are older than the key
+  // named only where they change something: texts, and what is kept under them, are older
   const std::string stray = spec.stray_m > 0.0 ? fmt::format("&stray={}", spec.stray_m) : "";
-  return fmt::format("{}{}?seed={}&similarity={}&speed={}&people={}&camera={}{}", kScheme,
+  const std::string copy = spec.copy > 0 ? fmt::format("&copy={}", spec.copy) : "";
+  return fmt::format("{}{}?seed={}&similarity={}&speed={}&people={}&camera={}{}{}", kScheme,
                      spec.preset, spec.seed, spec.similarity, spec.speed, spec.people, camera,
-                     stray);
+                     stray, copy);
 }
 
 }  // namespace samewhere::twin

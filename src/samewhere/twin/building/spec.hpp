@@ -19,6 +19,9 @@ struct Spec {
   int people = 0;           // walking about
   double stray_m = 0.0;     // key `stray`: largest lateral offset from the middle of the way
   Sensors sensors = Sensors::kRgbd;  // key `camera`
+  // Another building of the same design: the same walls, walk and common looks, but all that is a
+  // place's own drawn anew. 0: the first.
+  int copy = 0;
 };
 
 struct Preset {
@@ -35,8 +38,8 @@ bool is_twin_spec(std::string_view text);
 // key given twice, a value outside its range.
 Spec parse_spec(const std::string& text);
 
-// The spec with every key in a fixed order, but `stray` only where it is not 0: equal for equal
-// specs, and parse_spec reads it back.
+// The spec with every key in a fixed order, but `stray` and `copy` only where not 0: equal for
+// equal specs, and parse_spec reads it back.
 std::string canonical_text(const Spec& spec);
 
 }  // namespace samewhere::twin

@@ -64,6 +64,9 @@ TEST(TwinSpec, EqualSpecsHaveOneCanonicalText) {
   const std::string astray = canonical_text(parse_spec("twin:mirror?stray=0.8&seed=7&speed=1.5"));
   EXPECT_EQ(astray, text + "&stray=0.8");
   EXPECT_EQ(canonical_text(parse_spec(astray)), astray);
+  const std::string copied = canonical_text(parse_spec("twin:mirror?copy=2&seed=7&speed=1.5"));
+  EXPECT_EQ(copied, text + "&copy=2");
+  EXPECT_EQ(canonical_text(parse_spec(copied)), copied);
 }
 
 struct BadSpec {
@@ -94,6 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSpec{"twin:office-loop?similarity=nan", "similarity = nan is not a number in [0, 1]"},
         BadSpec{"twin:office-loop?speed=0.49", "speed = 0.49 is not a number in [0.5, 2]"},
         BadSpec{"twin:office-loop?speed=2.1", "speed = 2.1 is not a number in [0.5, 2]"},
+        BadSpec{"twin:office-loop?copy=-1", "copy = -1 is not a whole number in [0, 1000]"},
         BadSpec{"twin:office-loop?stray=1.1", "stray = 1.1 is not a number in [0, 1]"},
         BadSpec{"twin:office-loop?people=31", "people = 31 is not a whole number in [0, 30]"},
         BadSpec{"twin:office-loop?people=-1", "people = -1 is not a whole number in [0, 30]"},
