@@ -36,7 +36,7 @@ struct Settings {
   int num_starts = 10;
   int num_frames = 300;  // after each start: about 20 m
   bool is_mid_run = false;
-  std::string closer;  // similarity of a third place, which is not in the map; empty: none
+  std::string elsewhere;  // similarity of another building where the camera is; empty: none
   std::string csv_file;
 };
 
@@ -129,11 +129,11 @@ bool is_correct_pose(const core::Rigid3& world_from_body, const Walk& walk, std:
 }
 
 double walked_m(const Walk& walk, int from, int to) {
+  const auto position_m = [&](int frame) -> const Eigen::Vector3d& {
+    return walk.truth.trajectory[static_cast<std::size_t>(frame)].world_from_camera.translation;
+  };
   double sum_m = 0.0;
-  for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)
-    sum_m += (walk.truth.trajectory[i + 1].world_from_camera.translation -
-              walk.truth.trajectory[i].world_from_camera.translation)
-                 .norm();
+  for (int i = from; i < to; ++i) sum_m += (position_m(i + 1) - position_m(i)).norm();
   return sum_m;
 }
 
@@ -297,14 +297,14 @@ std::vector<std::string> row_of(const std::string& source, std::string_view wher
           time_ratio(outcomes, 0.99)};
 }
 
-// The map holds a place and its look-alike. The camera is in a third place, which is not in the map
-// and resembles the first more than the look-alike does: the same building with more similarity,
-// where fewer things are a place's own.
-Outcomes relocalize_elsewhere(const Walk& walk, const std::string& closer,
+// The map holds a place and its look-alike. The camera is in another building of the same design:
+// at the same similarity it resembles the place as much as the look-alike does, at a larger one
+// more.
+Outcomes relocalize_elsewhere(const Walk& walk, const std::string& other,
                               const std::vector<int>& starts, int num_map_frames,
                               const Settings& settings, pipeline::Config config) {
   const scene::StoredMap map = map_of(walk, num_map_frames, config);
-  config.source = closer;
+  config.source = other;
   const Walk elsewhere = walk_of(config);
   Outcomes outcomes;
   core::Progress progress("starts", static_cast<int>(starts.size()));
@@ -332,11 +332,11 @@ void measure_walk(int seed, const Settings& settings, Table& table) {
   for (int i = revisit.first; i <= revisit.last; ++i)
     if (walked_m(walk, i, last_frame) >= kWalk_m) revisit_frames.push_back(i);
   const std::vector<int> starts = evenly_spaced(revisit_frames, settings.num_starts);
-  if (!settings.closer.empty()) {
+  if (!settings.elsewhere.empty()) {
+    const std::string other = source_of(settings, seed, settings.elsewhere) + "&copy=1";
     table.rows.push_back(
-        row_of(source, "look-alikes of it, less alike",
-               relocalize_elsewhere(walk, source_of(settings, seed, settings.closer), starts,
-                                    revisit.first, settings, config)));
+        row_of(source, "two look-alikes, of " + settings.elsewhere,
+               relocalize_elsewhere(walk, other, starts, revisit.first, settings, config)));
     return;
   }
   table.rows.push_back(
@@ -375,9 +375,9 @@ std::function<void()> set_up(CLI::App& app) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--frames", settings->num_frames, "of a trial at most; the default is about 20 m")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--closer", settings->closer,
-                 "the camera is in a third place, which is not in the map: the building at this "
-                 "larger similarity");
+  app.add_option("--elsewhere", settings->elsewhere,
+                 "the camera is in another building of the same design with this similarity: no "
+                 "pose is right");
   app.add_flag("--mid-run", settings->is_mid_run,
                "carried off in the middle of a run: the session that makes the map runs on");
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
