@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <samewhere/pipeline/place_differences.hpp>
+#include <samewhere/pipeline/place_evidence.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -24,6 +25,7 @@ constexpr double kChanceShare = 0.07;
 // third place.
 constexpr double kOwnHere = 0.95;
 constexpr double kOwnElsewhere = 0.5;
+constexpr int kCloserShares = 16;
 constexpr double kMaxLogRatio = 6.0;
 // Objects of the other place lead to that place; alone they do not take this one back.
 constexpr double kMinLogRatio = -1.0;
@@ -70,14 +72,23 @@ bool PlaceDifferences::is_shown(double own, double others) const {
          others <= kMaxOtherShare * own;
 }
 
+double log_ratio_by_objects(double own, double others) {
+  const auto likelihood = [&](double share_of_own) {
+    return std::pow(share_of_own, own) * std::pow(1.0 - share_of_own, others);
+  };
+  double closer = 0.0;  // any share between those of the two
+  for (int i = 0; i < kCloserShares; ++i)
+    closer += likelihood(kOwnElsewhere + (i + 0.5) / kCloserShares * (kOwnHere - kOwnElsewhere));
+  const double elsewhere =
+      (1.0 - kShareOfCloser) * likelihood(kOwnElsewhere) + kShareOfCloser * closer / kCloserShares;
+  return std::clamp(std::log(likelihood(kOwnHere) / elsewhere), kMinLogRatio, kMaxLogRatio);
+}
+
 double log_ratio_by_differences(const PlaceDifferences& differences) {
   if (!differences.is_lookalike()) return 0.0;
   const double by_chance = kChanceShare * differences.both();
-  const double own = std::max(0.0, differences.only_here() - by_chance);
-  const double others = std::max(0.0, differences.only_there() - by_chance);
-  const double sum = own * std::log(kOwnHere / kOwnElsewhere) +
-                     others * std::log((1.0 - kOwnHere) / (1.0 - kOwnElsewhere));
-  return std::clamp(sum, kMinLogRatio, kMaxLogRatio);
+  return log_ratio_by_objects(std::max(0.0, differences.only_here() - by_chance),
+                              std::max(0.0, differences.only_there() - by_chance));
 }
 
 }  // namespace samewhere::pipeline

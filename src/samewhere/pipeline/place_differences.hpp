@@ -51,7 +51,10 @@ class PlaceDifferences {
 
 // Logarithm of a likelihood ratio: of this place against a look-alike that is not in the map. A
 // third place differs from both places of the map, and shows objects of either alone about as
-// often; the place itself shows its own.
+// often, or, if it is closer to this one (kShareOfCloser), more of this one; the place itself shows
+// its own.
 double log_ratio_by_differences(const PlaceDifferences& differences);
+// The same for so many objects of this place alone and of the other alone, none of them by chance.
+double log_ratio_by_objects(double own, double others);
 
 }  // namespace samewhere::pipeline

@@ -108,5 +108,16 @@ TEST_F(PlaceDifferencesTest, AThirdPlaceDiffersFromBoth) {
   EXPECT_LT(log_ratio_by_differences(differences_), 0.0);
 }
 
+TEST(LogRatioByObjects, OfAPlaceThatIsNotInTheMapMostMayBeThoseOfThisOne) {
+  constexpr double kConfirmed = 2.5;  // track.relocalization.min_log_ratio
+  EXPECT_EQ(log_ratio_by_objects(0.0, 0.0), 0.0);
+  EXPECT_GT(log_ratio_by_objects(7.0, 0.0), kConfirmed);
+  EXPECT_LT(log_ratio_by_objects(4.0, 0.0), kConfirmed) << "a closer one may show as many";
+  EXPECT_LT(log_ratio_by_objects(8.0, 1.0), kConfirmed);
+  EXPECT_LT(log_ratio_by_objects(5.0, 2.0), 0.0);
+  for (double own = 1.0; own < 30.0; ++own)
+    EXPECT_GT(log_ratio_by_objects(own + 1.0, 0.0), log_ratio_by_objects(own, 0.0));
+}
+
 }  // namespace
 }  // namespace samewhere::pipeline

@@ -41,6 +41,15 @@ double normal(double x, double mean, double sigma) {
   return std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * std::numbers::pi));
 }
 
+// Of a mean that is anywhere between the two.
+double normal_between(double x, double from, double to, double sigma) {
+  if (to - from < 0.01 * sigma) return normal(x, to, sigma);
+  const auto share_below = [&](double limit) {
+    return 0.5 * std::erfc((x - limit) / (sigma * std::numbers::sqrt2));
+  };
+  return (share_below(to) - share_below(from)) / (to - from);
+}
+
 double density_here(double ratio) {
   return normal(std::min(ratio, kHere), kHere, kHereSigma) + kOutlier;
 }
@@ -108,9 +117,12 @@ bool is_lookalike(double other_ratio, int num_views) {
 double log_ratio_by_lookalike(double found_ratio, double other_ratio, double num_views) {
   if (num_views <= 0.0) return 0.0;
   const double sigma = std::hypot(kHereSigma / std::sqrt(num_views), kPlaceSigma);
-  const double here = normal(std::min(found_ratio, kHere), kHere, sigma);
-  const double expected = other_ratio * kHere;
-  const double lookalike = normal(std::max(found_ratio, expected), expected, sigma);
+  const double found = std::min(found_ratio, kHere);
+  const double here = normal(found, kHere, sigma);
+  const double expected = std::min(other_ratio, 1.0) * kHere;
+  const double alike = normal(std::max(found, expected), expected, sigma);
+  const double closer = normal_between(std::max(found, expected), expected, kHere, sigma);
+  const double lookalike = (1.0 - kShareOfCloser) * alike + kShareOfCloser * closer;
   return std::clamp(std::log(here / lookalike), -kMaxByLookAlike, kMaxByLookAlike);
 }
 

@@ -68,10 +68,14 @@ class PlaceEvidence {
 // inlier of this place, over so many views after steps.
 bool is_lookalike(double other_ratio, int num_views);
 
-// Evidence of a look-alike place in the map that explains the views clearly worse. Look-alikes of
-// one building differ by about as much: one that is not in the map would leave the winner with
-// fewer inliers, too. `found_ratio`: of the winner, over what mapping found; `other_ratio`: inliers
-// of the look-alike per inlier of the winner; `num_views`: independent ones.
+// Of look-alikes that are not in the map: so many may differ less from a place than the one in the
+// map does, as the same wing one floor up. The others differ by about as much.
+inline constexpr double kShareOfCloser = 0.2;
+
+// Evidence of a look-alike place in the map that explains the views clearly worse: one that is not
+// in the map would leave the winner with fewer inliers, too, unless it is closer. `found_ratio`: of
+// the winner, over what mapping found; `other_ratio`: inliers of the look-alike per inlier of the
+// winner; `num_views`: independent ones.
 double log_ratio_by_lookalike(double found_ratio, double other_ratio, double num_views);
 
 }  // namespace samewhere::pipeline

@@ -67,6 +67,14 @@ TEST(PlaceEvidence, AMappedLookAlikeShowsHowMuchLookAlikesDiffer) {
   EXPECT_EQ(log_ratio_by_lookalike(1.05, 0.6, 0.0), 0.0) << "no view";
 }
 
+// The same wing one floor up may differ less than the other wing.
+TEST(PlaceEvidence, APlaceThatIsNotInTheMapMayBeCloserThanTheMappedLookAlike) {
+  EXPECT_LT(log_ratio_by_lookalike(0.95, 0.6, 20.0), kConfirmed);
+  EXPECT_LT(log_ratio_by_lookalike(0.85, 0.6, 20.0), 0.5);
+  EXPECT_GT(log_ratio_by_lookalike(1.05, 0.6, 20.0), kConfirmed);
+  EXPECT_LT(log_ratio_by_lookalike(1.05, 0.1, 1e6), 4.5) << "however different the mapped one is";
+}
+
 TEST(PlaceEvidence, ALookAlikeExplainsMuchOrForLong) {
   EXPECT_TRUE(is_lookalike(0.5, 4));
   EXPECT_FALSE(is_lookalike(0.25, 4)) << "it may share a door";
