@@ -104,7 +104,7 @@ TEST(RecordedShake, NoneIsNoMotion) {
   for (const Jet& jet : none.at(3.0)) EXPECT_EQ(jet.value, 0.0);
 }
 
-std::string refusal_of(const core::Trajectory& trajectory) {
+std::string why_no_walk(const core::Trajectory& trajectory) {
   try {
     const RecordedShake shake(trajectory);
   } catch (const core::InputError& error) {
@@ -115,14 +115,14 @@ std::string refusal_of(const core::Trajectory& trajectory) {
 
 TEST(RecordedShake, WhatIsNoWalkIsRefused) {
   const core::Trajectory walk = recorded_walk(0.0, Eigen::Quaterniond::Identity());
-  EXPECT_EQ(refusal_of({}), "found 0 poses over 0.0 s, expected 10 s at least");
-  EXPECT_EQ(refusal_of({walk.begin(), walk.begin() + 101}),
+  EXPECT_EQ(why_no_walk({}), "found 0 poses over 0.0 s, expected 10 s at least");
+  EXPECT_EQ(why_no_walk({walk.begin(), walk.begin() + 101}),
             "found 101 poses over 5.0 s, expected 10 s at least");
   core::Trajectory cut = walk;
   cut.erase(cut.begin() + 200, cut.begin() + 220);
-  EXPECT_EQ(refusal_of(cut),
+  EXPECT_EQ(why_no_walk(cut),
             "found no pose for 1.05 s after stamp 1009.950000, expected one every 0.5 s at least");
-  EXPECT_EQ(refusal_of(recorded_walk(0.0, Eigen::Quaterniond::Identity(), 0.1)),
+  EXPECT_EQ(why_no_walk(recorded_walk(0.0, Eigen::Quaterniond::Identity(), 0.1)),
             "found 0 % of the time at 0.2 m/s or faster, expected a walk: 50 %");
 }
 
