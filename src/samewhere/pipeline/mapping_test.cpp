@@ -31,7 +31,7 @@ class MappingInRooms : public LookAlikeRooms {
     core::DirectLink<BundleAll, scene::Edit> bundling(
         [](const BundleAll& /*message*/, const BundleLink::Reply& reply) { reply({}); });
     Mapping mapping(config_, map_, {loops, bundling}, {});
-    mapping.take(EndOfInput{}, {});
+    mapping.take(ToMapping(EndOfInput{}), {});
     return mapping.map();
   }
 
