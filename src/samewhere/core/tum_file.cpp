@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <iterator>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -6,6 +9,16 @@
 #include <samewhere/core/tum_file.hpp>
 
 namespace samewhere::core {
+
+namespace {
+
+std::string first_words(std::string_view text, std::size_t count) {
+  std::vector<std::string> words = words_between_commas(text);
+  words.resize(std::min(words.size(), count));
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+}  // namespace
 
 StampedPose tum_pose(const TextLine& line) {
   const TextLine values{line.place, words_between_commas(line.text)};
@@ -19,9 +32,10 @@ StampedPose tum_pose(const TextLine& line) {
   return {n[0], {rotation.normalized(), {n[1], n[2], n[3]}}};
 }
 
-Trajectory read_tum(const std::filesystem::path& path) {
+Trajectory read_tum(const std::filesystem::path& path, MoreColumns more) {
   Trajectory trajectory;
-  for (const TextLine& line : read_text_lines(path)) {
+  for (TextLine line : read_text_lines(path)) {
+    if (more == MoreColumns::kSkipped) line.text = first_words(line.text, 8);
     const StampedPose pose = tum_pose(line);
     if (!trajectory.empty() && pose.stamp_s <= trajectory.back().stamp_s) {
       throw InputError(fmt::format("{}: found stamp {:.6f} after {:.6f}, expected stamps that rise",

@@ -132,12 +132,13 @@ void Mapping::ask_for_loops(const cv::Mat& image, bool starts_map) {
 
 void Mapping::close_waiting_loops() {
   if (!config_.close_loops || map_.keyframes.empty()) return;
-  for (std::size_t num_known = 0; num_known != accepted_.size();) {
+  std::size_t num_known = 0;
+  do {
     num_known = accepted_.size();
     loops_.send(AskAgain{map_});
     ++num_unheard_;
     hear_loops(0);
-  }
+  } while (accepted_.size() != num_known);
 }
 
 bool Mapping::hear_loops(int max_unheard) {

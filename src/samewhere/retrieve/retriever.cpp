@@ -130,7 +130,8 @@ void Retriever::check(const core::Descriptor& descriptor) const {
   if (!describer_checksum_) return;
   core::require(descriptor.describer_checksum == *describer_checksum_,
                 "descriptors are compared only with those of the same describer");
-  core::require(descriptor.unit.size() == static_cast<std::size_t>(store_.vector_length()),
+  const auto length = static_cast<std::size_t>(store_.vector_length());
+  core::require(store_.num_vectors() == 0 || descriptor.unit.size() == length,
                 "descriptors of one describer have one length");
 }
 

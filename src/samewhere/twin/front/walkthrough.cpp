@@ -48,7 +48,7 @@ Walk walk_of(const Motion& motion, int num_frames) {
 RecordedShake recorded_shake(const std::string& file) {
   if (file.empty()) return {};
   try {
-    return RecordedShake(core::read_tum(file));
+    return RecordedShake(core::read_tum(file, core::MoreColumns::kSkipped));
   } catch (const core::InputError& error) {
     const std::string_view reason = error.what();
     throw core::InputError(reason.find(file) == std::string_view::npos

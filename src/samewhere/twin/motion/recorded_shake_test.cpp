@@ -93,8 +93,8 @@ TEST(RecordedShake, HasLimits) {
   }
   const RecordedShake shake(wild);
   for (double t = 0.0; t < kDuration_s; t += 0.01) {
-    ASSERT_LE(std::abs(shake.at(t)[kShakeLeft].value), kMostShake_m);
-    ASSERT_LE(std::abs(shake.at(t)[kShakeYaw].value), kMostShake_rad);
+    ASSERT_LT(std::abs(shake.at(t)[kShakeLeft].value), kMostShake_m + 1e-9);
+    ASSERT_LT(std::abs(shake.at(t)[kShakeYaw].value), kMostShake_rad + 1e-9);
   }
 }
 
@@ -148,8 +148,8 @@ TEST(RecordedShake, AWalkerMovesAsRecordedAndARobotDoesNot) {
 TEST(RecordedShake, ARealWalkLooksAroundMoreThanItTiltsAndStepsByCentimetres) {
   const char* const data = std::getenv("SAMEWHERE_DATA");
   if (data == nullptr) GTEST_SKIP() << "set SAMEWHERE_DATA to the folder of the recordings";
-  const RecordedShake shake(
-      core::read_tum(std::filesystem::path(data) / "paths" / "three_storeys.txt"));
+  const RecordedShake shake(core::read_tum(
+      std::filesystem::path(data) / "paths" / "three_storeys.txt", core::MoreColumns::kSkipped));
   std::array<double, kShakeChannels> squares{};
   int num_samples = 0;
   for (double t = 0.0; t < shake.duration_s(); t += 0.05, ++num_samples) {
