@@ -94,7 +94,7 @@ TEST_F(TumFile, AShortLineIsNamed) {
 TEST_F(TumFile, MoreColumnsAreRefusedOrSkipped) {
   const std::string text = "0 1 2 3 0 0 0 1 0.1 0.2\n1, 4, 5, 6, 0, 0, 0, 1, 0.1\n";
   EXPECT_THAT(complaint_about(text), HasSubstr("found 10 values, expected 8"));
-  std::ofstream(path_) << text;
+  write_file(path_, text);
   const Trajectory trajectory = read_tum(path_, MoreColumns::kSkipped);
   ASSERT_EQ(trajectory.size(), 2U);
   EXPECT_EQ(trajectory[1].world_from_camera.translation, Eigen::Vector3d(4.0, 5.0, 6.0));
