@@ -193,6 +193,20 @@ void add_odometry_options(CLI::App& sub, TwinCommand& command) {
       ->needs(odometry);
 }
 
+constexpr const char* kTwinKeysAndExamples =
+    "Keys of twin:PRESET?KEY=VALUE&KEY=VALUE: seed; similarity, 0 to 1; speed, 0.5 to 2; people, "
+    "0 to 30;\n"
+    "stray, 0 to 1: lateral deviation of the path in m, with camera shake;\n"
+    "copy, 0 to 1000: another building of the same design, with its own small things;\n"
+    "camera: rgbd, stereo or mono.\n\n"
+    "Examples:\n"
+    "  samewhere twin --list\n"
+    "  samewhere twin 'twin:hotel?seed=3&similarity=0.9' --out hotel --format tum\n"
+    "  samewhere twin 'twin:mirror?camera=stereo' --out mirror --format euroc\n"
+    "  samewhere twin 'twin:warehouse?people=5' --sheet warehouse.jpg\n"
+    "  samewhere twin twin:office-loop --odometry poor.tum --degrade 5%+slip\n"
+    "  samewhere twin twin:office-loop --out short --set twin.num_frames=100";
+
 }  // namespace
 
 void add_twin_command(CLI::App& app) {
@@ -215,19 +229,7 @@ void add_twin_command(CLI::App& app) {
   const CLI::Option* list =
       sub->add_flag("--list", command->is_list, "print the presets, one per line");
   add_config_options(*sub, command->config);
-  sub->footer(
-      "Keys of twin:PRESET?KEY=VALUE&KEY=VALUE: seed; similarity, 0 to 1; speed, 0.5 to 2; people, "
-      "0 to 30;\n"
-      "stray, 0 to 1: lateral deviation of the path in m, with camera shake;\n"
-      "copy, 0 to 1000: another building of the same design, with its own small things;\n"
-      "camera: rgbd, stereo or mono.\n\n"
-      "Examples:\n"
-      "  samewhere twin --list\n"
-      "  samewhere twin 'twin:hotel?seed=3&similarity=0.9' --out hotel --format tum\n"
-      "  samewhere twin 'twin:mirror?camera=stereo' --out mirror --format euroc\n"
-      "  samewhere twin 'twin:warehouse?people=5' --sheet warehouse.jpg\n"
-      "  samewhere twin twin:office-loop --odometry poor.tum --degrade 5%+slip\n"
-      "  samewhere twin twin:office-loop --out short --set twin.num_frames=100");
+  sub->footer(kTwinKeysAndExamples);
   sub->callback([command, sub, list] {
     if (command->is_list) {
       check_list_stands_alone(*sub, *list);
