@@ -19,6 +19,7 @@ constexpr double kLeftSigma = 0.15;
 constexpr double kLeastDiffering = 0.4;
 constexpr double kLeastSigma = 0.1;
 constexpr double kDiffering = 1.0 / (kHere - kLeastDiffering);
+constexpr double kShareOfChanged = 0.2;  // of places
 // Of a view: that from here on the place differs more, or less, than it did.
 constexpr double kChanges = 0.02;
 // Of a view in the mean of the found ratio, one view later.
@@ -118,7 +119,8 @@ double log_ratio_by_lookalike(double found_ratio, double other_ratio, double num
   if (num_views <= 0.0) return 0.0;
   const double sigma = std::hypot(kHereSigma / std::sqrt(num_views), kPlaceSigma);
   const double found = std::min(found_ratio, kHere);
-  const double here = normal(found, kHere, sigma);
+  const double here = (1.0 - kShareOfChanged) * normal(found, kHere, sigma) +
+                      kShareOfChanged * normal_between(found, kLeastDiffering, kHere, sigma);
   const double expected = std::min(other_ratio, 1.0) * kHere;
   const double alike = normal(std::max(found, expected), expected, sigma);
   const double closer = normal_between(std::max(found, expected), expected, kHere, sigma);

@@ -289,7 +289,8 @@ std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::
 
 double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const {
   double by_lookalike = 0.0;
-  double against = 0.0;  // objects that a look-alike alone explains
+  double by_too_few = 0.0;  // inliers for this place: it may be a look-alike that is not in the map
+  double against = 0.0;     // objects that a look-alike alone explains
   for (const Hypothesis& other : hypotheses_) {
     if (&other == &hypothesis || !other.place.is_recognised) continue;
     const ComparedCounts sums = compare(other.views, hypothesis.views);
@@ -297,16 +298,20 @@ double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const 
     if (sums.a_in_all.num_inliers < config_.track.weak_inliers * sums.num_views) continue;
     const double in_all = 1.0 * sums.a_in_all.num_inliers / sums.b_in_all.num_inliers;
     const double in_comparable = 1.0 * sums.a.num_inliers / sums.b.num_inliers;
-    if (is_lookalike(std::min(in_all, in_comparable), sums.num_views))
-      by_lookalike = std::max(
-          by_lookalike, log_ratio_by_lookalike(hypothesis.evidence.found_ratio(), in_comparable,
-                                               hypothesis.evidence.num_independent()));
+    if (is_lookalike(std::min(in_all, in_comparable), sums.num_views)) {
+      const double by_found = log_ratio_by_lookalike(
+          hypothesis.evidence.found_ratio(), in_comparable, hypothesis.evidence.num_independent());
+      by_lookalike = std::max(by_lookalike, by_found);
+      by_too_few = std::min(by_too_few, by_found);
+    }
     const double by_differences = log_ratio_by_differences(other.differences);
     by_lookalike = std::max(by_lookalike, by_differences);
     against = std::min(against, by_differences);
   }
+  // objects of this place alone confirm it no more where too little else of it is found; that alone
+  // does not take it back, it may have changed
   return hypothesis.evidence.log_likelihood_ratio() + hypothesis.log_ratio_by_motion +
-         by_lookalike + against;
+         std::max(0.0, by_lookalike + by_too_few) + against;
 }
 
 bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {
