@@ -75,6 +75,11 @@ TEST(PlaceEvidence, APlaceThatIsNotInTheMapMayBeCloserThanTheMappedLookAlike) {
   EXPECT_LT(log_ratio_by_lookalike(1.05, 0.1, 1e6), 4.5) << "however different the mapped one is";
 }
 
+TEST(PlaceEvidence, TooFewInliersSpeakAgainstAPlaceUnlessItHasChanged) {
+  EXPECT_LT(log_ratio_by_lookalike(0.73, 0.86, 2.5), -1.0);
+  EXPECT_GT(log_ratio_by_lookalike(0.73, 0.86, 1e6), -3.0) << "a changed place has as few";
+}
+
 TEST(PlaceEvidence, ALookAlikeExplainsMuchOrForLong) {
   EXPECT_TRUE(is_lookalike(0.5, 4));
   EXPECT_FALSE(is_lookalike(0.25, 4)) << "it may share a door";
