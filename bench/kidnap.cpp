@@ -375,11 +375,13 @@ std::function<void()> set_up(CLI::App& app) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--frames", settings->num_frames, "of a trial at most; the default is about 20 m")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--elsewhere", settings->elsewhere,
-                 "the camera is in another building of the same design with this similarity: no "
-                 "pose is right");
+  CLI::Option* elsewhere = app.add_option(
+      "--elsewhere", settings->elsewhere,
+      "the camera is in another building of the same design with this similarity: no "
+      "pose is right");
   app.add_flag("--mid-run", settings->is_mid_run,
-               "carried off in the middle of a run: the session that makes the map runs on");
+               "carried off in the middle of a run: the session that makes the map runs on")
+      ->excludes(elsewhere);
   app.add_option("--csv", settings->csv_file, "write the table to this file, too");
   return [settings] { measure(*settings); };
 }

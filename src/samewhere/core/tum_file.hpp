@@ -8,11 +8,13 @@
 
 namespace samewhere::core {
 
+// What is made of columns after the eight of a pose, covariances say.
+enum class MoreColumns { kRefused, kSkipped };
+
 // A trajectory in the format of the TUM RGB-D benchmark: lines `stamp tx ty tz qx qy qz qw`
 // (seconds, metres, rotation as a quaternion that is normalised here), blank lines and '#'
 // comments. Throws InputError naming file and line if a line is short or, unless they are skipped,
 // has more columns, a value is no finite number, a quaternion is zero, or stamps do not rise.
-enum class MoreColumns { kRefused, kSkipped };  // as covariances
 Trajectory read_tum(const std::filesystem::path& path, MoreColumns more = MoreColumns::kRefused);
 
 // A pose from a line of that format, its values between blanks or commas. Throws InputError as

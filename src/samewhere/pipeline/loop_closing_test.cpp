@@ -69,7 +69,7 @@ TEST_F(LoopClosingInRooms, NorAreThoseOfAStoredMap) {
   EXPECT_EQ(LoopClosing(config_, stored()).index().num_descriptors(), 0);
 }
 
-TEST_F(LoopClosingInRooms, AtTheEndNothingWaitsThatWasNeverAsked) {
+TEST_F(LoopClosingInRooms, AskedAgainWithNothingThatWaitsItAnswersNothing) {
   LoopClosing closing(config_);
   closing.answer(ToLoopClosing(FindLoops{map_, map_.keyframes[0].id, picture_}));
   const LoopAnswer answer = closing.answer(ToLoopClosing(AskAgain{map_}));
