@@ -12,15 +12,11 @@ namespace {
 constexpr double kStep_m = 0.2;
 constexpr double kStep_rad = 0.35;
 constexpr double kRetrieval_m = 0.5;  // between two retrievals
-constexpr std::size_t kViewsOfProvisional = 30;
 constexpr std::size_t kMaxProvisional = 8;
 constexpr int kMaxFailures = 3;       // evaluations of a hypothesis without a pose
 constexpr int kMaxUnmeasured = 15;    // views
-constexpr int kMinVisible = 30;       // landmarks; with fewer the map ends
 constexpr int kMinComparedViews = 2;  // to follow another hypothesis
-constexpr int kMinViewsOfOthers = 4;  // to confirm: the first ones may be of a poor pose
-constexpr double kMaxOtherRatio = 0.85;
-constexpr double kOvertakes = 1.15;  // inliers of another hypothesis, over those of the best
+constexpr double kOvertakes = 1.15;   // inliers of another hypothesis, over those of the best
 
 // `metre`: in map units.
 bool is_step(const core::Rigid3& motion, double metre) {
@@ -57,13 +53,6 @@ scene::LocalMap local_map_of(const features::View& view) {
   return local;
 }
 
-std::vector<core::LandmarkId> inliers_of(const RelocalizedPose& pose) {
-  std::vector<core::LandmarkId> ids;
-  for (const auto& match : pose.track.matches)
-    ids.push_back(pose.local_map.landmarks[static_cast<std::size_t>(match.first)]);
-  return ids;
-}
-
 }  // namespace
 
 ProvisionalRelocalization::ProvisionalRelocalization(const Config& config,
@@ -73,7 +62,7 @@ ProvisionalRelocalization::ProvisionalRelocalization(const Config& config,
 void ProvisionalRelocalization::begin(LeadingHypotheses leading, double log_ratio_by_motion,
                                       const features::View& view) {
   hypotheses_.clear();
-  Hypothesis first(config_.track.relocalization.common_length_m);
+  PlaceHypothesis first(config_.track.relocalization.common_length_m);
   first.place = place_of(leading.best);
   first.place.is_recognised = true;
   first.pose = std::move(leading.best);
@@ -93,7 +82,8 @@ void ProvisionalRelocalization::begin(LeadingHypotheses leading, double log_rati
 bool ProvisionalRelocalization::wants_places() const {
   if (!is_active()) return false;
   return since_asked_m_ >= kRetrieval_m || num_unmeasured_ > 0 ||
-         log_ratio(hypotheses_.front()) >= config_.track.relocalization.min_log_ratio;
+         log_ratio(hypotheses_.front(), hypotheses_, config_.track.weak_inliers) >=
+             config_.track.relocalization.min_log_ratio;
 }
 
 void ProvisionalRelocalization::note_asked() {
@@ -101,7 +91,7 @@ void ProvisionalRelocalization::note_asked() {
   since_asked_m_ = 0.0;
 }
 
-void ProvisionalRelocalization::track(Hypothesis& hypothesis, const Query& query) const {
+void ProvisionalRelocalization::track(PlaceHypothesis& hypothesis, const Query& query) const {
   const scene::MapVersion& map = query.map;
   const Place& place = hypothesis.place;
   const core::KeyframeId keyframe = hypothesis.pose ? nearest_keyframe(map, *hypothesis.pose)
@@ -120,7 +110,7 @@ void ProvisionalRelocalization::track(Hypothesis& hypothesis, const Query& query
 }
 
 core::Rigid3 ProvisionalRelocalization::estimate_motion(const Place& before, const Query& query) {
-  Hypothesis& leader = best();
+  PlaceHypothesis& leader = best();
   if (leader.pose)
     return inverse(world_from_body(query.map, before)) *
            world_from_body(query.map, place_of(*leader.pose));
@@ -132,7 +122,7 @@ core::Rigid3 ProvisionalRelocalization::estimate_motion(const Place& before, con
 
 void ProvisionalRelocalization::advance(const core::Rigid3& last_from_this, const Query& query) {
   const double moved_m = last_from_this.translation.norm() / metre_of(query.map);
-  for (Hypothesis& hypothesis : hypotheses_) {
+  for (PlaceHypothesis& hypothesis : hypotheses_) {
     const bool is_measured = &hypothesis == &best() && hypothesis.pose;
     const bool is_recognised = hypothesis.place.is_recognised;
     if (is_measured)
@@ -150,62 +140,19 @@ void ProvisionalRelocalization::advance(const core::Rigid3& last_from_this, cons
   last_view_ = query.view;
 }
 
-double ProvisionalRelocalization::found_ratio_of_mapping(const scene::LocalMap& local_map,
-                                                         const scene::MapVersion& map) {
-  constexpr double kUsual = 0.5;
-  if (std::exchange(map_number_, map.number) != map.number) found_ratios_.clear();
-  const auto [known, is_new] = found_ratios_.try_emplace(local_map.reference, kUsual);
-  if (is_new) known->second = pipeline::found_ratio_of_mapping(map, local_map).value_or(kUsual);
-  return known->second;
-}
-
-void ProvisionalRelocalization::add_view(Hypothesis& hypothesis, const Query& query) const {
-  if (!hypothesis.views.empty() && hypothesis.views.back().frame == query.view.frame) return;
-  ViewEvidence of_view = measure_view(query.view, query.map, hypothesis.place,
-                                      hypothesis.pose ? &*hypothesis.pose : nullptr, config_.map);
-  of_view.is_comparable = of_view.total.num_visible >= kMinVisible;
-  hypothesis.views.push_back(of_view);
-  if (hypothesis.views.size() > kViewsOfProvisional)
-    hypothesis.views.erase(hypothesis.views.begin());
-}
-
-double ProvisionalRelocalization::new_metres(Hypothesis& hypothesis, const Query& query) {
-  const double metre = metre_of(query.map);
-  return hypothesis.new_ground.add(world_from_body(query.map, hypothesis.place).translation / metre,
-                                   hypothesis.since_step.translation.norm() / metre);
-}
-
-void ProvisionalRelocalization::add_step(Hypothesis& hypothesis, const Query& query) {
-  add_view(hypothesis, query);
-  const Counts& total = hypothesis.views.back().total;
-  PlaceView view{.found_ratio = 0.0, .new_ratio = 1.0, .moved_m = new_metres(hypothesis, query)};
-  if (hypothesis.pose) {
-    const std::vector<core::LandmarkId> inliers = inliers_of(*hypothesis.pose);
-    int num_new = 0;
-    for (const core::LandmarkId id : inliers) num_new += hypothesis.seen.insert(id).second ? 1 : 0;
-    view.new_ratio = static_cast<double>(num_new) / static_cast<double>(inliers.size());
-    view.found_ratio =
-        total.num_inliers / (found_ratio_of_mapping(hypothesis.pose->local_map, query.map) *
-                             std::max(1, total.num_visible));
-  }
-  if (total.num_visible >= kMinVisible) hypothesis.evidence.add(view);
-  hypothesis.num_failures = hypothesis.pose ? 0 : hypothesis.num_failures + 1;
-  hypothesis.since_step = {};
-  hypothesis.since_step_m = 0.0;
-}
-
 // The one that waits for longest, so that no frame takes much longer than another.
 void ProvisionalRelocalization::evaluate_one_other(const Query& query) {
-  const auto next = std::max_element(
-      hypotheses_.begin() + 1, hypotheses_.end(),
-      [](const Hypothesis& a, const Hypothesis& b) { return a.since_step_m < b.since_step_m; });
+  const auto next = std::max_element(hypotheses_.begin() + 1, hypotheses_.end(),
+                                     [](const PlaceHypothesis& a, const PlaceHypothesis& b) {
+                                       return a.since_step_m < b.since_step_m;
+                                     });
   if (next == hypotheses_.end() || !is_step(next->since_step, metre_of(query.map))) return;
   track(*next, query);
   const bool is_recognised = next->place.is_recognised;
   if (next->pose) next->place = place_of(*next->pose);
   next->place.is_recognised = is_recognised;
-  add_step(*next, query);
-  add_view(best(), query);
+  next->add_step(query.view, query.map, config_.map, found_ratios_);
+  best().add_view(query.view, query.map, config_.map);
   // the pose of the first view is a coarse one
   const bool are_measured = best().pose && next->pose && next->views.size() > 1 &&
                             best().pose->track.pose.frame == query.view.frame;
@@ -218,9 +165,9 @@ void ProvisionalRelocalization::evaluate_one_other(const Query& query) {
 // Hypotheses that have become one place: the better evidence is kept.
 void ProvisionalRelocalization::merge_equal(const scene::MapVersion& map) {
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
-    Hypothesis& kept = hypotheses_[i];
+    PlaceHypothesis& kept = hypotheses_[i];
     for (std::size_t k = hypotheses_.size() - 1; k > i; --k) {
-      Hypothesis& other = hypotheses_[k];
+      PlaceHypothesis& other = hypotheses_[k];
       if (!kept.pose || !other.pose || other.views.empty() ||
           !are_one_place(map, kept.place, other.place, median_distance(*kept.pose)))
         continue;
@@ -242,19 +189,19 @@ void ProvisionalRelocalization::add_places(const std::vector<Place>& places, con
     if (!place.keyframe_from_body) continue;
     place.keyframe_from_body = *place.keyframe_from_body * since_asked_;
     const double distance = best().pose ? median_distance(*best().pose) : 0.0;
-    const auto same = std::ranges::find_if(hypotheses_, [&](const Hypothesis& known) {
+    const auto same = std::ranges::find_if(hypotheses_, [&](const PlaceHypothesis& known) {
       return are_one_place(query.map, known.place, place, distance);
     });
     if (same != hypotheses_.end()) {
       same->place.is_recognised |= place.is_recognised;
       // where it was, the map ends
-      if (same->pose && num_visible(*same) >= kMinVisible) continue;
+      if (same->pose && same->is_in_map()) continue;
       move_to(same->place, place);
       same->pose.reset();
       continue;
     }
     if (hypotheses_.size() >= kMaxProvisional) continue;
-    Hypothesis next(config_.track.relocalization.common_length_m);
+    PlaceHypothesis next(config_.track.relocalization.common_length_m);
     next.place = place;
     next.since_step_m = kStep_m;
     next.since_step.translation.x() = kStep_m;
@@ -262,12 +209,8 @@ void ProvisionalRelocalization::add_places(const std::vector<Place>& places, con
   }
 }
 
-int ProvisionalRelocalization::num_visible(const Hypothesis& hypothesis) {
-  return hypothesis.views.empty() ? 0 : hypothesis.views.back().total.num_visible;
-}
-
 std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::MapVersion& map) {
-  const auto overtakes = [&](const Hypothesis& other) {
+  const auto overtakes = [&](const PlaceHypothesis& other) {
     if (!other.pose || !other.place.is_recognised) return false;
     if (num_unmeasured_ >= kMinComparedViews) return true;
     if (other.differences.is_there()) return true;
@@ -280,49 +223,11 @@ std::optional<core::Rigid3> ProvisionalRelocalization::switch_best(const scene::
   const core::Rigid3 new_from_old =
       world_from_body(map, next->place) * inverse(world_from_body(map, best().place));
   PlaceDifferences differences = next->differences.swapped();
-  for (Hypothesis& hypothesis : hypotheses_) hypothesis.differences = {};
+  for (PlaceHypothesis& hypothesis : hypotheses_) hypothesis.differences = {};
   best().differences = std::move(differences);
   std::iter_swap(hypotheses_.begin(), next);
   num_unmeasured_ = 0;
   return new_from_old;
-}
-
-double ProvisionalRelocalization::log_ratio(const Hypothesis& hypothesis) const {
-  double by_lookalike = 0.0;
-  double by_too_few = 0.0;  // inliers for this place: it may be a look-alike that is not in the map
-  double against = 0.0;     // objects that a look-alike alone explains
-  for (const Hypothesis& other : hypotheses_) {
-    if (&other == &hypothesis || !other.place.is_recognised) continue;
-    const ComparedCounts sums = compare(other.views, hypothesis.views);
-    if (sums.num_views < kMinViewsOfOthers || sums.b.num_inliers == 0) continue;
-    if (sums.a_in_all.num_inliers < config_.track.weak_inliers * sums.num_views) continue;
-    const double in_all = 1.0 * sums.a_in_all.num_inliers / sums.b_in_all.num_inliers;
-    const double in_comparable = 1.0 * sums.a.num_inliers / sums.b.num_inliers;
-    if (is_lookalike(std::min(in_all, in_comparable), sums.num_views)) {
-      const double by_found = log_ratio_by_lookalike(
-          hypothesis.evidence.found_ratio(), in_comparable, hypothesis.evidence.num_independent());
-      by_lookalike = std::max(by_lookalike, by_found);
-      by_too_few = std::min(by_too_few, by_found);
-    }
-    const double by_differences = log_ratio_by_differences(other.differences);
-    by_lookalike = std::max(by_lookalike, by_differences);
-    against = std::min(against, by_differences);
-  }
-  // objects of this place alone confirm it no more where too little else of it is found; that alone
-  // does not take it back, it may have changed
-  return hypothesis.evidence.log_likelihood_ratio() + hypothesis.log_ratio_by_motion +
-         std::max(0.0, by_lookalike + by_too_few) + against;
-}
-
-bool ProvisionalRelocalization::is_alone(const Hypothesis& hypothesis) const {
-  // the likelihood ratio says how much less is less enough
-  const CompetingLimits limits{kMaxOtherRatio, config_.track.weak_inliers};
-  return std::ranges::none_of(hypotheses_, [&](const Hypothesis& other) {
-    if (&other == &hypothesis) return false;
-    if (other.place.is_recognised && std::ssize(other.views) < kMinViewsOfOthers) return true;
-    if (other.differences.is_here()) return false;
-    return !other.views.empty() && is_competing(other.views, hypothesis.views, limits);
-  });
 }
 
 bool ProvisionalRelocalization::has_untracked_recognition(const std::vector<Place>& places,
@@ -330,7 +235,7 @@ bool ProvisionalRelocalization::has_untracked_recognition(const std::vector<Plac
   return std::ranges::any_of(places, [&](const Place& place) {
     if (!place.is_recognised || !place.keyframe_from_body) return false;
     const Place now{place.keyframe, *place.keyframe_from_body * since_asked_, true};
-    return std::ranges::none_of(hypotheses_, [&](const Hypothesis& hypothesis) {
+    return std::ranges::none_of(hypotheses_, [&](const PlaceHypothesis& hypothesis) {
       return hypothesis.pose &&
              are_one_place(map, hypothesis.place, now, median_distance(*hypothesis.pose));
     });
@@ -339,18 +244,20 @@ bool ProvisionalRelocalization::has_untracked_recognition(const std::vector<Plac
 
 ProvisionalRelocalization::Decision ProvisionalRelocalization::decide(
     const std::vector<Place>* places, const Query& query) const {
-  const Hypothesis& leader = hypotheses_.front();
+  const PlaceHypothesis& leader = hypotheses_.front();
   const double required = config_.track.relocalization.min_log_ratio;
-  const double ratio = log_ratio(leader);
+  const double ratio = log_ratio(leader, hypotheses_, config_.track.weak_inliers);
   if (ratio <= -required || num_unmeasured_ >= kMaxUnmeasured) return Decision::kTakenBack;
   const bool is_measured = leader.pose && leader.pose->track.pose.frame == query.view.frame;
   if (ratio < required || places == nullptr || !is_measured) return Decision::kOpen;
   if (leader.pose->track.pose.status == core::FrameStatus::kWeak) return Decision::kOpen;
-  if (!is_alone(leader) || has_untracked_recognition(*places, query.map)) return Decision::kOpen;
+  if (!is_alone(leader, hypotheses_, config_.track.weak_inliers) ||
+      has_untracked_recognition(*places, query.map))
+    return Decision::kOpen;
   return Decision::kConfirmed;
 }
 
-core::FramePose ProvisionalRelocalization::pose_of(const Hypothesis& hypothesis,
+core::FramePose ProvisionalRelocalization::pose_of(const PlaceHypothesis& hypothesis,
                                                    const Query& query) {
   core::FramePose pose;
   if (hypothesis.pose && hypothesis.pose->track.pose.frame == query.view.frame)
@@ -376,7 +283,8 @@ ProvisionalRelocalization::Result ProvisionalRelocalization::evaluate(
   best().place = before;
   advance(motion, query);
   num_unmeasured_ = best().pose ? 0 : num_unmeasured_ + 1;
-  if (is_step(best().since_step, metre_of(map))) add_step(best(), query);
+  if (is_step(best().since_step, metre_of(map)))
+    best().add_step(view, map, config_.map, found_ratios_);
   if (hypotheses_.size() > 1) evaluate_one_other(query);
   merge_equal(map);
   if (places != nullptr) add_places(*places, query);

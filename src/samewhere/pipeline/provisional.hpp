@@ -1,15 +1,11 @@
 #pragma once
 
-#include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include <samewhere/pipeline/config.hpp>
-#include <samewhere/pipeline/place_differences.hpp>
-#include <samewhere/pipeline/place_evidence.hpp>
+#include <samewhere/pipeline/place_hypothesis.hpp>
 #include <samewhere/pipeline/pose_hypotheses.hpp>
-#include <samewhere/pipeline/view_evidence.hpp>
 
 namespace samewhere::pipeline {
 
@@ -44,58 +40,34 @@ class ProvisionalRelocalization {
                   const std::vector<Place>* places);
 
  private:
-  struct Hypothesis {
-    explicit Hypothesis(double common_length_m) : evidence(common_length_m) {}
-
-    Place place;                          // of the newest view
-    std::optional<RelocalizedPose> pose;  // of the view that was evaluated last
-    std::vector<ViewEvidence> views;      // after steps, oldest first
-    core::Rigid3 since_step;
-    double since_step_m = 0.0;
-    PlaceEvidence evidence;
-    NewGround new_ground;
-    double log_ratio_by_motion = 0.0;
-    PlaceDifferences differences;  // of the best hypothesis, from this one
-    std::set<core::LandmarkId> seen;
-    int num_failures = 0;  // evaluations without a pose, in a row
-  };
   // Of one call of evaluate().
   struct Query {
     const features::View& view;
     const scene::MapVersion& map;
   };
 
-  Hypothesis& best() { return hypotheses_.front(); }
-  void track(Hypothesis& hypothesis, const Query& query) const;
+  PlaceHypothesis& best() { return hypotheses_.front(); }
+  void track(PlaceHypothesis& hypothesis, const Query& query) const;
   core::Rigid3 estimate_motion(const Place& before, const Query& query);
   void advance(const core::Rigid3& last_from_this, const Query& query);
   void evaluate_one_other(const Query& query);
   void merge_equal(const scene::MapVersion& map);
-  void add_view(Hypothesis& hypothesis, const Query& query) const;
-  // Since the last step, where the camera had not been yet.
-  static double new_metres(Hypothesis& hypothesis, const Query& query);
-  void add_step(Hypothesis& hypothesis, const Query& query);
   void add_places(const std::vector<Place>& places, const Query& query);
-  static int num_visible(const Hypothesis& hypothesis);  // in its last view
   std::optional<core::Rigid3> switch_best(const scene::MapVersion& map);
-  double log_ratio(const Hypothesis& hypothesis) const;
-  bool is_alone(const Hypothesis& hypothesis) const;
   bool has_untracked_recognition(const std::vector<Place>& places,
                                  const scene::MapVersion& map) const;
-  static core::FramePose pose_of(const Hypothesis& hypothesis, const Query& query);
+  static core::FramePose pose_of(const PlaceHypothesis& hypothesis, const Query& query);
   Decision decide(const std::vector<Place>* places, const Query& query) const;
-  double found_ratio_of_mapping(const scene::LocalMap& local_map, const scene::MapVersion& map);
 
   Config config_;
   track::Tracker tracker_;
-  std::vector<Hypothesis> hypotheses_;  // the best first
+  std::vector<PlaceHypothesis> hypotheses_;  // the best first
   features::View last_view_;
   core::Rigid3 last_motion_;  // constant velocity
   core::Rigid3 since_asked_;
   double since_asked_m_ = 0.0;
+  FoundRatios found_ratios_;
   int num_unmeasured_ = 0;  // views in a row that the best hypothesis did not explain
-  std::map<core::KeyframeId, double> found_ratios_;  // of this map version
-  std::uint64_t map_number_ = 0;
 };
 
 }  // namespace samewhere::pipeline
