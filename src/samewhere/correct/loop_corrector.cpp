@@ -121,13 +121,12 @@ std::optional<LoopEdge> between_holders(const MapVersion& map, const LoopEdge& l
   const scene::Holder match = holder_of(map, loop.match);
   const scene::Holder query = holder_of(map, loop.query);
   if (query.keyframe == match.keyframe) return std::nullopt;
-  return LoopEdge{
-      query.keyframe,
-      match.keyframe,
-      match.holder_from_keyframe * loop.match_from_query * inverse(query.holder_from_keyframe),
-      loop.information,
-      loop.cause,
-      loop.log_scale};
+  LoopEdge held = loop;
+  held.query = query.keyframe;
+  held.match = match.keyframe;
+  held.match_from_query =
+      match.holder_from_keyframe * loop.match_from_query * inverse(query.holder_from_keyframe);
+  return held;
 }
 
 scene::Edit solve_poses(const MapVersion& map, const optimize::Config& config) {

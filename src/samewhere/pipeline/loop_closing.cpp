@@ -15,6 +15,7 @@ namespace {
 AcceptedLoop accepted_loop(const MapVersionContext& context, const scene::MapVersion& map,
                            const core::LedgerRow& row, const core::LoopClosure& loop) {
   scene::LoopEdge edge = context.edge_of(row.candidate, *loop.match_from_query);
+  edge.drift_sample = context.measure_drift(edge);
   edge.information = loop.information;
   edge.cause = loop.candidate;
   return {.edge = edge,

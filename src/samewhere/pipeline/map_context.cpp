@@ -57,6 +57,11 @@ std::optional<core::OdometryEvidence> MapVersionContext::measure_odometry(
                                   config_.verify);
 }
 
+std::optional<scene::DriftSample> MapVersionContext::measure_drift(
+    const scene::LoopEdge& loop) const {
+  return verify::measure_drift(map_, loop, scale_errors(config_), config_.verify);
+}
+
 std::optional<core::CompetingLoopEvidence> MapVersionContext::measure_competing_loop(
     const core::Candidate& candidate, const core::Sim3& match_from_query) const {
   return verify::measure_competing_loop(map_, edge_of(candidate, match_from_query),

@@ -42,6 +42,9 @@ class MapVersionContext final : public verify::MapContext {
   std::optional<core::CompetingPlaceEvidence> measure_competing_place(
       const core::LedgerRow& row, const core::LedgerRow& other) const override;
 
+  // What the loop tells of odometry.
+  std::optional<scene::DriftSample> measure_drift(const scene::LoopEdge& loop) const;
+
   // The edge of the pose graph that the candidate's relative pose would be. Without depth between
   // the keyframes that hold culled ones, since a culled keyframe has no landmark depths.
   scene::LoopEdge edge_of(const core::Candidate& candidate,

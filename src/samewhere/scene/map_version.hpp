@@ -76,6 +76,14 @@ struct Keyframe {
 
 inline bool is_live(const Keyframe& keyframe) { return !keyframe.culled_parent_from_keyframe; }
 
+// How large the error of odometry was that a loop took out: under the covariance of the drift since
+// the match and that of the loop, chi-square with 6 degrees of freedom; and the standard deviation
+// of the position under that drift, in its least certain direction, metres.
+struct DriftSample {
+  double chi_square = 0.0;
+  double sigma_m = 0.0;
+};
+
 // An accepted loop between two keyframes.
 struct LoopEdge {
   core::KeyframeId query;
@@ -86,6 +94,8 @@ struct LoopEdge {
   double log_scale = 0.0;       // what is 1 long at the query is exp(log_scale) long at the match
   std::uint64_t closed_at = 0;  // MapVersion::number then; set by apply()
   std::uint64_t num_landmarks_then = 0;  // landmarks of the map then, all; set by apply()
+  // None: it told nothing new, or its map was loaded from a file.
+  std::optional<DriftSample> drift_sample;
 };
 
 // Number of keyframes or landmarks that are part of the map.

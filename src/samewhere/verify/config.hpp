@@ -23,6 +23,7 @@ struct Config {
   double min_look_alike_distance_m = 3.0;
   double min_look_alike_distance_without_depth = 1.0;
   double min_look_alike_gain = 12.0;
+  double min_variance_factor = 0.25;
   double min_similarity = -1.0;
   int pause_frames = 0;
   bool require_geometry = true;
@@ -82,6 +83,14 @@ inline void visit_evidence(Config& config, core::FieldVisitor& visit) {
                "a look-alike place under odometry",
        .min = 0.0,
        .max = 1e9});
+}
+
+inline void visit_drift(Config& config, core::FieldVisitor& visit) {
+  visit("min_variance_factor", config.min_variance_factor,
+        {.help = "closed loops show how much smaller the errors of odometry are than its "
+                 "covariances; these are multiplied by as little as this; 1: not at all",
+         .min = 0.01,
+         .max = 1.0});
 }
 
 inline void visit_thresholds(Config& config, core::FieldVisitor& visit) {
@@ -185,6 +194,7 @@ inline void visit_measurement(Config& config, core::FieldVisitor& visit) {
 
 inline void visit_fields(Config& config, core::FieldVisitor& visit) {
   visit_evidence(config, visit);
+  visit_drift(config, visit);
   visit_thresholds(config, visit);
   visit_sequence(config, visit);
   visit_measurement(config, visit);

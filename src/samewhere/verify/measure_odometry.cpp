@@ -3,21 +3,15 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <samewhere/verify/drift_path.hpp>
 #include <samewhere/verify/look_alike.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
 #include <samewhere/verify/odometry_chain.hpp>
+#include <samewhere/verify/variance_factor.hpp>
 
 namespace samewhere::verify {
 namespace {
-
-double least_certain_sigma_m(const core::Matrix6d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_position(covariance.topLeftCorner<3, 3>(),
-                                                                   Eigen::EigenvaluesOnly);
-  return std::sqrt(of_position.eigenvalues().maxCoeff());
-}
 
 // Of the query's pose in the match, from what the map knows to what the loop measures.
 core::Vector6d correction_by(const scene::MapVersion& map, const scene::LoopEdge& claim) {
@@ -26,43 +20,78 @@ core::Vector6d correction_by(const scene::MapVersion& map, const scene::LoopEdge
   return difference(known, claim.match_from_query);
 }
 
+// The query's pose in the match by odometry alone. Nothing if that does not join the two.
+std::optional<geometry::UncertainPose> drift_alone(const scene::MapVersion& map,
+                                                   const scene::LoopEdge& claim,
+                                                   const ScaleErrors& scale) {
+  const auto chain = odometry_between(map, claim.match, claim.query);
+  if (!chain) return std::nullopt;
+  return expected_end(map, *chain, claim.log_scale, scale);
+}
+
+void learn_from_loops(const scene::MapVersion& map, const Config& config,
+                      core::Matrix6d& covariance) {
+  if (has_scale_drift(map)) return;
+  covariance *= variance_factor(map, least_certain_sigma_m(covariance), config);
+}
+
+core::OdometryEvidence measured_alone(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                                      const std::optional<geometry::UncertainPose>& drift,
+                                      const Config& config) {
+  const core::Vector6d correction = correction_by(map, claim);
+  core::OdometryEvidence evidence;
+  evidence.correction_m = correction.head<3>().norm();
+  evidence.correction_rad = correction.tail<3>().norm();
+  if (!drift) return evidence;
+  const core::Vector6d error = difference(drift->a_from_b, claim.match_from_query);
+  const core::Matrix6d covariance = drift->covariance + loop_information(config).inverse();
+  evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
+  evidence.sigma_m = least_certain_sigma_m(covariance);
+  evidence.look_alike_gain =
+      look_alike_gain(error, covariance, least_look_alike_distance(map, config));
+  return evidence;
+}
+
 }  // namespace
 
 core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
                                               const scene::LoopEdge& claim,
                                               const ScaleErrors& scale, const Config& config) {
-  const core::Vector6d correction = correction_by(map, claim);
-  core::OdometryEvidence evidence;
-  evidence.correction_m = correction.head<3>().norm();
-  evidence.correction_rad = correction.tail<3>().norm();
-  if (const auto chain = odometry_between(map, claim.match, claim.query)) {
-    const geometry::UncertainPose expected = expected_end(map, *chain, claim.log_scale, scale);
-    const core::Vector6d error = difference(expected.a_from_b, claim.match_from_query);
-    const core::Matrix6d covariance = expected.covariance + loop_information(config).inverse();
-    evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
-    evidence.sigma_m = least_certain_sigma_m(covariance);
-    evidence.look_alike_gain =
-        look_alike_gain(error, covariance, least_look_alike_distance(map, config));
-  }
-  return evidence;
+  return measured_alone(map, claim, drift_alone(map, claim, scale), config);
 }
 
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config) {
-  core::OdometryEvidence evidence = measure_odometry_alone(map, claim, scale, config);
+  auto drift = drift_alone(map, claim, scale);
+  if (drift) learn_from_loops(map, config, drift->covariance);
+  core::OdometryEvidence evidence = measured_alone(map, claim, drift, config);
   if (evidence.mahalanobis_squared > config.max_odometry_chi_square || map.loops.empty() ||
       has_scale_drift(map))
     return evidence;
-  if (const auto drift = covariance_with_loops(map, claim.match, claim.query, scale.bias)) {
-    const core::Vector6d correction = correction_by(map, claim);
-    const core::Matrix6d covariance = *drift + loop_information(config).inverse();
-    evidence.mahalanobis_squared_with_loops = correction.dot(covariance.llt().solve(correction));
-    evidence.look_alike_gain_with_loops =
-        look_alike_gain(correction, covariance, least_look_alike_distance(map, config));
-    evidence.sigma_m = std::min(evidence.sigma_m.value_or(std::numeric_limits<double>::infinity()),
-                                least_certain_sigma_m(covariance));
-  }
+  auto with_loops = covariance_with_loops(map, claim.match, claim.query, scale.bias);
+  if (!with_loops) return evidence;
+  learn_from_loops(map, config, *with_loops);
+  const core::Vector6d correction = correction_by(map, claim);
+  const core::Matrix6d covariance = *with_loops + loop_information(config).inverse();
+  evidence.mahalanobis_squared_with_loops = correction.dot(covariance.llt().solve(correction));
+  evidence.look_alike_gain_with_loops =
+      look_alike_gain(correction, covariance, least_look_alike_distance(map, config));
+  evidence.sigma_m = std::min(evidence.sigma_m.value_or(std::numeric_limits<double>::infinity()),
+                              least_certain_sigma_m(covariance));
   return evidence;
+}
+
+std::optional<scene::DriftSample> measure_drift(const scene::MapVersion& map,
+                                                const scene::LoopEdge& claim,
+                                                const ScaleErrors& scale, const Config& config) {
+  if (has_scale_drift(map)) return std::nullopt;
+  const auto drift = drift_alone(map, claim, scale);
+  if (!drift) return std::nullopt;
+  std::optional<core::Matrix6d> with_loops;
+  if (!map.loops.empty())
+    with_loops = covariance_with_loops(map, claim.match, claim.query, scale.bias);
+  return drift_sample(difference(drift->a_from_b, claim.match_from_query), drift->covariance,
+                      with_loops, config);
 }
 
 double least_look_alike_distance(const scene::MapVersion& map, const Config& config) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <samewhere/core/verdict.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/verify/config.hpp>
@@ -23,9 +25,16 @@ core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
                                               const scene::LoopEdge& claim,
                                               const ScaleErrors& scale, const Config& config);
 
-// The same; where it passes the gate, with depth, also by odometry and the loops closed so far.
+// The same, with depth under covariances that are as large as the loops closed so far show
+// (variance_factor.hpp); where it passes the gate, also by odometry and those loops together.
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config);
+
+// What the loop `claim`, if it is closed in this map, tells of odometry. Nothing without depth, and
+// where it tells nothing new.
+std::optional<scene::DriftSample> measure_drift(const scene::MapVersion& map,
+                                                const scene::LoopEdge& claim,
+                                                const ScaleErrors& scale, const Config& config);
 
 // How near a look-alike place may be: metres, or without depth median depths.
 double least_look_alike_distance(const scene::MapVersion& map, const Config& config);
