@@ -26,6 +26,7 @@
 #include <samewhere/report/results_folder.hpp>
 #include <samewhere/report/write.hpp>
 #include <samewhere/run/open_source.hpp>
+#include <samewhere/run/recognition.hpp>
 #include <samewhere/run/run.hpp>
 #include <samewhere/run/run_odometry.hpp>
 #include <samewhere/run/self_calibration.hpp>
@@ -148,6 +149,7 @@ pipeline::Config config_of(const RunCommand& command, Work work) {
   config.source = run::absolute_source(command.source);
   if (command.is_realtime) config.input.realtime = true;
   config.input.needs_calibration = work == Work::kSlam;
+  if (work == Work::kRecognition) config = run::without_map(std::move(config));
   if (!command.camera.empty()) config.input.camera = command.camera;
   if (command.fov_deg > 0.0) config.input.fov_deg = command.fov_deg;
   if (!config.input.camera.empty()) config.input.camera = run::absolute_source(config.input.camera);

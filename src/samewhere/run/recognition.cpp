@@ -14,12 +14,6 @@
 namespace samewhere::run {
 namespace {
 
-// There is no map that could use one.
-pipeline::Config without_pose(pipeline::Config config) {
-  config.verify.require_pose = false;
-  return config;
-}
-
 // The time of all steps of a frame, for each frame that all of them have had.
 void add_whole_frames(core::Timings& timings) {
   std::vector<double> whole_ms;
@@ -37,6 +31,11 @@ void add_whole_frames(core::Timings& timings) {
 }
 
 }  // namespace
+
+pipeline::Config without_map(pipeline::Config config) {
+  config.verify.require_pose = false;
+  return config;
+}
 
 void run_in_turn(const NextFrame& next, const RecognitionSteps& steps) {
   while (const std::optional<core::Frame> frame = next()) {
@@ -60,7 +59,7 @@ void run_in_threads(const NextFrame& next, const RecognitionSteps& steps) {
 }
 
 Recognition::Recognition(const pipeline::Config& config, Watcher* watcher)
-    : config_(without_pose(config)),
+    : config_(without_map(config)),
       detector_(config_, pipeline::recognition_settings(config_)),
       watcher_(watcher) {}
 

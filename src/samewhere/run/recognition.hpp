@@ -43,10 +43,14 @@ void run_in_turn(const NextFrame& next, const RecognitionSteps& steps);
 // caller's, a few frames behind each other. The steps share nothing but what they hand on.
 void run_in_threads(const NextFrame& next, const RecognitionSteps& steps);
 
+// The config of recognition alone: no loop needs a relative pose, since there is no map that could
+// use one.
+pipeline::Config without_map(pipeline::Config config);
+
 // Recognition alone: which frames show a place seen before?
 class Recognition {
  public:
-  // The window is resolved into frames. No loop needs a relative pose: verify.require_pose is off.
+  // The window is resolved into frames, and the config is that of without_map().
   // `watcher`, if any, is told of each verified frame.
   explicit Recognition(const pipeline::Config& config, Watcher* watcher = nullptr);
 

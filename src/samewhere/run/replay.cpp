@@ -34,11 +34,19 @@ bool is_unmeasured(const core::Verdict& before, const core::Verdict& after,
   return refused == nullptr || refused->stage == core::Refusal::kMatches;
 }
 
+// The loops of the map decide later, by asking again, which is not replayed.
+bool is_told_later(const core::Verdict& before, const core::Verdict& after) {
+  return std::holds_alternative<core::Ambiguous>(after) &&
+         core::stage_of(before) == core::name_of(core::Refusal::kCompeting);
+}
+
 Replay outcome_of(const core::LedgerRow& before, const core::Verdict& after,
                   const verify::Config& config) {
   if (is_unmeasured(before.verdict, after, config)) return Replay::kUnmeasured;
   if (is_refused_by_graph(before.verdict) && core::is_loop(after)) return Replay::kGraph;
-  return core::is_loop(before.verdict) == core::is_loop(after) ? Replay::kSame : Replay::kChanged;
+  if (before.verdict.index() == after.index() || is_told_later(before.verdict, after))
+    return Replay::kSame;
+  return Replay::kChanged;
 }
 
 // The sequence of a candidate depends on which other candidates pass: it is computed again.
@@ -62,7 +70,8 @@ class Replayer {
       view_ = evidence.sequence->query_view;
       settle(pending_.settle(view_ - 1));  // the run has seen all views before, found or not
     }
-    core::Verdict verdict = verify::decide(row.candidate, evidence, history_, config_);
+    core::Verdict verdict =
+        verify::decide(row.candidate, evidence, history_, config_for(row.candidate));
     if (core::is_loop(verdict)) history_.last_loop_query = row.candidate.query;
     if (verify::is_pending(verdict) && evidence.sequence) pending_.add(row.candidate, evidence);
     verdicts_.insert_or_assign(row.candidate.id, std::move(verdict));
@@ -74,6 +83,15 @@ class Replayer {
   }
 
  private:
+  verify::Config config_for(const core::Candidate& candidate) const {
+    verify::Config config = config_;
+    if (candidate.origin == core::Origin::kRelocalization) {
+      config.require_pose = false;
+      config.min_views = 1;
+    }
+    return config;
+  }
+
   void settle(const std::vector<core::LedgerRow>& rows) {
     for (const core::LedgerRow& row : rows)
       verdicts_.insert_or_assign(row.candidate.id, row.verdict);

@@ -9,7 +9,7 @@ namespace samewhere::run {
 
 // The verdict with other thresholds.
 enum class Replay {
-  kSame,        // loop or no loop, as before
+  kSame,        // as before: loop, rejected or ambiguous
   kChanged,     //
   kUnmeasured,  // the next check needs a measurement that the run did not make
                 // (--measure-all)
@@ -23,7 +23,8 @@ struct ReplayedRow {
 };
 
 // Decides all candidates of a finished run again, in their order, from their evidence; the
-// pause after a loop follows the new verdicts.
+// pause after a loop follows the new verdicts. As in the run, a relocalization needs neither a
+// relative pose nor a sequence. `config`: the one in force, with other thresholds.
 std::vector<ReplayedRow> replay(const core::Ledger& ledger, const verify::Config& config);
 
 }  // namespace samewhere::run

@@ -90,6 +90,35 @@ TEST(Replay, ASequenceIsCountedAgainFromCandidatesThatPassNow) {
   EXPECT_EQ(core::stage_of(replay(ledger, few)[0].after), "sequence");
 }
 
+TEST(Replay, FromAmbiguousToRejectedIsAChange) {
+  core::Evidence uncertain = evidence(60);
+  uncertain.odometry->look_alike_gain = 1.0;
+  const core::LedgerRow row = verified(0, uncertain);
+  ASSERT_EQ(core::name_of(row.verdict), "AMBIGUOUS");
+  EXPECT_EQ(replay({row}, {})[0].outcome, Replay::kSame);
+  EXPECT_EQ(replay({row}, {.min_inliers = 80})[0].outcome, Replay::kChanged);
+}
+
+TEST(Replay, AskingAgainIsNotReplayed) {
+  core::Evidence contradicted = evidence(60);
+  contradicted.odometry->mahalanobis_squared_with_loops = 1000.0;
+  core::LedgerRow row = verified(0, contradicted);
+  ASSERT_EQ(core::stage_of(row.verdict), "competing");
+  row.verdict = core::Rejection{row.candidate.id, contradicted, core::Refusal::kCompeting, "asked"};
+  EXPECT_EQ(replay({row}, {})[0].outcome, Replay::kSame);
+}
+
+TEST(Replay, ARelocalizationNeedsNoRelativePose) {
+  core::Evidence alone = evidence(60);
+  alone.geometry->match_from_query.reset();
+  core::LedgerRow row = verified(0, alone);
+  row.candidate.origin = core::Origin::kRelocalization;
+  row.verdict = verify::decide(row.candidate, alone, {}, {.min_views = 1, .require_pose = false});
+  ASSERT_TRUE(core::is_loop(row.verdict));
+  EXPECT_EQ(replay({row}, {})[0].outcome, Replay::kSame);
+  EXPECT_EQ(replay({row}, {.min_inliers = 80})[0].outcome, Replay::kChanged);
+}
+
 TEST(Replay, WhatNeverWaitedCannotBeSaidToHaveWaitedInVain) {
   core::Evidence alone = evidence(60);
   alone.geometry->match_from_query.reset();
