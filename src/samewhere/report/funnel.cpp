@@ -21,22 +21,27 @@ std::vector<const core::LedgerRow*> final_rows(const core::Ledger& ledger) {
 
 Funnel funnel(const core::Ledger& ledger) {
   Funnel result;
-  std::map<core::Refusal, int> num_rejected;
+  std::map<core::Refusal, FunnelRow> rows;
   for (const core::LedgerRow* row : final_rows(ledger)) {
     ++result.num_candidates;
-    if (const auto* rejection = std::get_if<core::Rejection>(&row->verdict))
-      ++num_rejected[rejection->stage];
-    else if (core::is_loop(row->verdict))
-      ++result.num_accepted;
-    else
+    if (const auto* rejection = std::get_if<core::Rejection>(&row->verdict)) {
+      ++rows[rejection->stage].num_rejected;
+    } else if (const auto* ambiguous = std::get_if<core::Ambiguous>(&row->verdict)) {
+      ++rows[ambiguous->stage].num_ambiguous;
       ++result.num_ambiguous;
+    } else {
+      ++result.num_accepted;
+    }
   }
   int num_arrived = result.num_candidates;
   for (const core::Refusal stage : core::kAllRefusals) {
+    FunnelRow& row = rows[stage];
     // a check of verify.method deformation alone
-    if (stage == core::Refusal::kDeformation && num_rejected[stage] == 0) continue;
-    result.rows.push_back({stage, num_arrived, num_rejected[stage]});
-    num_arrived -= num_rejected[stage];
+    if (stage == core::Refusal::kDeformation && row.num_rejected == 0) continue;
+    row.stage = stage;
+    row.num_arrived = num_arrived;
+    num_arrived -= row.num_rejected + row.num_ambiguous;
+    result.rows.push_back(row);
   }
   return result;
 }
@@ -78,11 +83,10 @@ std::string_view question_of(core::Refusal check) {
 std::string funnel_text(const Funnel& funnel) {
   std::string text;
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "  {:<12}{:>9}{:>9}\n", "check", "arrived", "rejected");
+  fmt::format_to(out, "  {:<12}{:>9}{:>9}{:>10}\n", "check", "arrived", "rejected", "ambiguous");
   for (const FunnelRow& row : funnel.rows)
-    fmt::format_to(out, "  {:<12}{:>9}{:>9}   {}\n", core::name_of(row.stage), row.num_arrived,
-                   row.num_rejected, question_of(row.stage));
-  fmt::format_to(out, "  {:<12}{:>9}\n", "ambiguous", funnel.num_ambiguous);
+    fmt::format_to(out, "  {:<12}{:>9}{:>9}{:>10}   {}\n", core::name_of(row.stage),
+                   row.num_arrived, row.num_rejected, row.num_ambiguous, question_of(row.stage));
   fmt::format_to(out, "  {:<12}{:>9}\n", "accepted", funnel.num_accepted);
   return text;
 }

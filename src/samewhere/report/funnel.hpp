@@ -16,14 +16,15 @@ struct FunnelRow {
   core::Refusal stage = core::Refusal::kSimilarity;
   int num_arrived = 0;
   int num_rejected = 0;
+  int num_ambiguous = 0;
 };
 
-// Candidates rejected by each check: one row per check, in the order of the checks.
+// Candidates decided by each check: one row per check, in the order of the checks.
 struct Funnel {
   std::vector<FunnelRow> rows;
   int num_candidates = 0;
   int num_accepted = 0;
-  int num_ambiguous = 0;  // passed the checks, but a competing hypothesis remains
+  int num_ambiguous = 0;
 };
 
 // Of the final verdicts.

@@ -109,7 +109,8 @@ Json page_checks(const core::Ledger& ledger) {
     checks.push_back({{"name", core::name_of(row.stage)},
                       {"question", question_of(row.stage)},
                       {"num_arrived", row.num_arrived},
-                      {"num_rejected", row.num_rejected}});
+                      {"num_rejected", row.num_rejected},
+                      {"num_ambiguous", row.num_ambiguous}});
   return checks;
 }
 

@@ -48,8 +48,8 @@
     };
     const rows = run.checks.map((check) => element('button', { class: 'check', onclick: () => openCheck(check.name) },
       element('span', { class: 'name' }, samewhere.checkTerm(check.name), element('small', {}, check.question)),
-      element('span', { class: 'bar' }, bar('passed', check.num_arrived - check.num_rejected), bar('rejected', check.num_rejected)),
-      element('span', { class: 'numbers' }, element('b', {}, number(check.num_rejected)), ` of ${number(check.num_arrived)} rejected`)));
+      element('span', { class: 'bar' }, bar('passed', check.num_arrived - check.num_rejected - check.num_ambiguous), bar('ambiguous', check.num_ambiguous), bar('rejected', check.num_rejected)),
+      element('span', { class: 'numbers' }, element('b', {}, number(check.num_rejected)), ` of ${number(check.num_arrived)} rejected`, check.num_ambiguous ? `, ${number(check.num_ambiguous)} ambiguous` : '')));
     const counts = (kind) => run.candidates.filter((candidate) => candidate.kind === kind).length;
     for (const kind of ['ambiguous', 'accepted', ...(counts('false') ? ['false'] : [])]) {
       rows.push(element('div', { class: 'check' }, element('span', { class: 'name' }, samewhere.term(kind)), element('span', { class: 'bar' }, bar(kind, counts(kind))), element('span', { class: 'numbers' }, element('b', {}, number(counts(kind))))));
