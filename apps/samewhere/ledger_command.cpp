@@ -88,6 +88,8 @@ core::Ledger rows_after(const std::vector<run::ReplayedRow>& replayed) {
 }
 
 void replay(const LedgerCommand& command) {
+  if (command.assignments.empty())
+    throw core::InputError("replay: expected --set verify.NAME=VALUE or --prior");
   for (const auto& assignment : command.assignments)
     if (!assignment.starts_with("verify."))
       throw core::InputError("--set " + assignment +
@@ -159,8 +161,14 @@ void add_show(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
 void add_replay(CLI::App& ledger, const std::shared_ptr<LedgerCommand>& command) {
   CLI::App* sub = ledger.add_subcommand(
       "replay", "Verify all candidates again with other thresholds, without the images");
-  sub->add_option("--set", command->assignments, "verify.NAME=VALUE, as often as needed")
-      ->required();
+  sub->add_option("--set", command->assignments, "verify.NAME=VALUE, as often as needed");
+  sub->add_option_function<std::string>(
+         "--prior",
+         [command](const std::string& prior) {
+           command->assignments.push_back("verify.prior=" + prior);
+         },
+         "the same as --set verify.prior=PRIOR")
+      ->type_name("repetitive|unique");
   sub->callback([command] { replay(*command); });
 }
 
@@ -195,6 +203,7 @@ void add_ledger_command(CLI::App& app) {
       "  samewhere ledger runs/demo list --stage odometry\n"
       "  samewhere ledger runs/demo show 12 --picture why.svg\n"
       "  samewhere ledger runs/demo replay --set verify.min_inliers=80\n"
+      "  samewhere ledger runs/demo replay --prior unique\n"
       "  samewhere ledger runs/demo reject 12");
 }
 

@@ -1,5 +1,6 @@
 #include "ledger_figures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -65,6 +66,12 @@ void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
   figures.add("odometry gate, chi-square",
               odometry ? std::optional(odometry->mahalanobis_squared) : std::nullopt, "",
               at_most(config.max_odometry_chi_square));
+  const auto gain = odometry
+                        ? std::max(odometry->look_alike_gain, odometry->look_alike_gain_with_loops)
+                        : std::nullopt;
+  figures.add("gain over a look-alike place", gain, "",
+              config.prior == verify::Prior::kRepetitive ? at_least(config.min_look_alike_gain)
+                                                         : std::string());
 }
 
 std::string text_of(const core::CompetingLoopEvidence& loop, const verify::Config& config) {

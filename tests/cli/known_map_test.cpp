@@ -41,7 +41,7 @@ TEST_F(KnownMap, RelocalizationIsReportedAndShown) {
   const Outcome found =
       run(fmt::format("run {} --map {} --localize --out {}", kWalk, in("a/map.sw"), in("b")));
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_THAT(found.out, HasSubstr("candidates in the loaded map / accepted"));
+  EXPECT_THAT(found.out, HasSubstr("candidates in the loaded map / recognized"));
   EXPECT_THAT(found.out, testing::ContainsRegex("loop candidates  *0\n"))
       << "what no truth knows does not count";
   EXPECT_THAT(run(fmt::format("ledger {} list --stage evidence", in("b"))).out,

@@ -194,7 +194,11 @@ OverriddenRun override_run(const std::filesystem::path& folder, std::size_t cand
   core::Ledger ledger = ledger_in_step(folder, &lock);
   const core::LedgerRow row = row_of(ledger, candidate, folder);
   const std::string frames_csv = core::read_file(folder / "frames.csv");
-  scene::MapFile file = scene::MapFile::open(folder / "map.sw", scene::MapAccess::kExtend);
+  const std::filesystem::path map = folder / "map.sw";
+  if (!std::filesystem::exists(map))
+    throw core::InputError(folder.string() +
+                           ": has no map.sw, as a run of `loops`; expected a run of SLAM");
+  scene::MapFile file = scene::MapFile::open(map, scene::MapAccess::kExtend);
   scene::StoredMap stored = file.load();
   stored.map.has_metric_odometry = config.odometry.is_used();
   OverriddenMap changed =

@@ -107,6 +107,19 @@ report::Figure relocalizations_figure(const pipeline::Slam& slam) {
       counts.num_provisional, counts.num_confirmed, counts.num_taken_back, counts.num_open());
 }
 
+// Where poses of the run end as provisional ones: they are no part of the trajectory.
+std::optional<std::string> note_on_provisional(const pipeline::Slam& slam,
+                                               const std::vector<report::FrameRecord>& frames) {
+  const auto num_provisional = std::ranges::count(
+      frames, core::FrameStatus::kProvisional, [](const auto& frame) { return frame.pose.status; });
+  if (slam.relocalizations().num_open() == 0 || num_provisional == 0) return std::nullopt;
+  return fmt::format(
+      "the place in the map was not confirmed: {} frames have a provisional pose, in frames.csv "
+      "alone; further metres confirm it or take it back, and where no two places look alike, "
+      "--prior unique does",
+      num_provisional);
+}
+
 void record_slam(const pipeline::Slam& slam, const std::vector<std::string>& names,
                  report::RunRecord& record) {
   record_frames(slam, names, record);
@@ -170,9 +183,13 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   if (evaluation.num_measured == 0 && plan.known.empty())
     record.figures.push_back({"not initialized, at the end", slam.why_not_initialized()});
   record.figures.push_back(prior_figure(record.ledger, config.verify));
+  if (auto relocalization = relocalization_prior_figure(record.ledger, config.verify))
+    record.figures.push_back(*std::move(relocalization));
   record.figures.push_back(
       report::figure("re-initializations", "{}", slam.num_reinitializations()));
   record.figures.push_back(relocalizations_figure(slam));
+  if (auto note = note_on_provisional(slam, record.frames))
+    record.figures.push_back({"note", *std::move(note)});
   record.figures.push_back(report::figure("keyframes / landmarks", "{} / {}",
                                           num_live(slam.map().keyframes),
                                           num_live(slam.map().landmarks)));

@@ -306,7 +306,7 @@ std::vector<Figure> figures_of(const SlamEvaluation& evaluation) {
   figures.push_back(figure("loops accepted: true / false / unknown", "{} / {} / {}", loops.num_true,
                            loops.num_false, loops.num_unknown));
   if (evaluation.num_of_known_map > 0) {
-    figures.push_back(figure("candidates in the loaded map / accepted", "{} / {}",
+    figures.push_back(figure("candidates in the loaded map / recognized", "{} / {}",
                              evaluation.num_of_known_map, evaluation.num_known_places));
   }
   if (evaluation.num_aliased_matching) {

@@ -43,7 +43,7 @@ void RunOdometry::see(const core::Frame& frame) {
     const double latest_s =
         frame.stamp_s + kMargin * source_.num_frames / source_.frame_rate_hz + kMargin;
     if (frame.stamp_s > path_->last_s() || (is_length_known && latest_s < path_->first_s()))
-      throw core::InputError(no_overlap(is_length_known ? latest_s : frame.stamp_s));
+      throw core::InputError(no_overlap(frame.stamp_s));
   }
   last_frame_s_ = frame.stamp_s;
   ++num_frames_;
@@ -51,17 +51,21 @@ void RunOdometry::see(const core::Frame& frame) {
 }
 
 std::string RunOdometry::no_overlap(double last_frame_s) const {
+  const std::string frames =
+      last_frame_s > *first_frame_s_
+          ? fmt::format("frames lie between {:.3f} and {:.3f} s", *first_frame_s_, last_frame_s)
+          : fmt::format("first frame lies at {:.3f} s", *first_frame_s_);
   return fmt::format(
-      "{}: has rows from {:.3f} to {:.3f} s, the frames lie between {:.3f} and {:.3f} s; expected "
+      "{}: has rows from {:.3f} to {:.3f} s, the {}; expected "
       "stamps of the same clock (images without stamps: names that are stamps, or a TUM rgb.txt)",
-      settings_.file, path_->first_s(), path_->last_s(), *first_frame_s_, last_frame_s);
+      settings_.file, path_->first_s(), path_->last_s(), frames);
 }
 
 report::Figure RunOdometry::figure() const {
   if (num_without_ > 0 && num_without_ < num_frames_) {
     spdlog::warn(
         "{}: {} of {} frames have no odometry (before, after or between rows more than "
-        "odometry.max_gap_s apart); in a new map they are tracked by images",
+        "odometry.max_gap_s apart); in a new map images alone track them, or lose them",
         settings_.file, num_without_, num_frames_);
   }
   return report::figure("frames without odometry", "{}", num_without_);
