@@ -21,7 +21,8 @@ MapVersionContext::MapVersionContext(const scene::MapVersion& map, const Keyfram
       keyframe_of_(keyframe_of),
       config_(config),
       query_(query),
-      is_without_depth_(scene::is_without_depth(map)) {}
+      is_without_depth_(scene::is_without_depth(map)),
+      drift_paths_(map) {}
 
 bool MapVersionContext::is_connected(core::FrameId match) const {
   return are_one_place(query_, match);
@@ -53,8 +54,8 @@ std::optional<core::DeformationEvidence> MapVersionContext::measure_deformation(
 
 std::optional<core::OdometryEvidence> MapVersionContext::measure_odometry(
     const core::Candidate& candidate, const core::Sim3& match_from_query) const {
-  return verify::measure_odometry(map_, edge_of(candidate, match_from_query), scale_errors(config_),
-                                  config_.verify);
+  return verify::measure_odometry(drift_paths_, edge_of(candidate, match_from_query),
+                                  scale_errors(config_), config_.verify);
 }
 
 std::optional<scene::DriftSample> MapVersionContext::measure_drift(

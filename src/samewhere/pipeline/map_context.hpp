@@ -62,6 +62,7 @@ class MapVersionContext final : public verify::MapContext {
   core::FrameId query_;
   bool is_without_depth_;
   mutable std::map<core::FrameId, std::set<core::KeyframeId>> neighbours_;
+  mutable verify::DriftPaths drift_paths_;
 };
 
 }  // namespace samewhere::pipeline

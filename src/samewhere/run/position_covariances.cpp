@@ -19,9 +19,10 @@ std::vector<report::PositionCovariance> position_covariances(const scene::MapVer
   const core::KeyframeId first = keyframes.front()->id;
   const Eigen::Matrix3d world_from_first =
       scene::world_from_body(map, first).rotation.toRotationMatrix();
+  verify::DriftPaths paths(map);
   const std::size_t step = (keyframes.size() - 1) / max_num + 1;
   for (std::size_t i = step; i < keyframes.size(); i += step) {
-    const auto in_first = verify::covariance_with_loops(map, first, keyframes[i]->id, bias);
+    const auto in_first = paths.covariance(first, keyframes[i]->id, bias);
     if (!in_first) continue;
     covariances.push_back(
         {keyframes[i]->view.frame,

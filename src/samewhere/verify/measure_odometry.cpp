@@ -62,13 +62,20 @@ core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
 
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config) {
+  DriftPaths paths(map);
+  return measure_odometry(paths, claim, scale, config);
+}
+
+core::OdometryEvidence measure_odometry(DriftPaths& paths, const scene::LoopEdge& claim,
+                                        const ScaleErrors& scale, const Config& config) {
+  const scene::MapVersion& map = paths.map();
   auto drift = drift_alone(map, claim, scale);
   if (drift) learn_from_loops(map, config, drift->covariance);
   core::OdometryEvidence evidence = measured_alone(map, claim, drift, config);
   if (evidence.mahalanobis_squared > config.max_odometry_chi_square || map.loops.empty() ||
       has_scale_drift(map))
     return evidence;
-  auto with_loops = covariance_with_loops(map, claim.match, claim.query, scale.bias);
+  auto with_loops = paths.covariance(claim.match, claim.query, scale.bias);
   if (!with_loops) return evidence;
   learn_from_loops(map, config, *with_loops);
   const core::Vector6d correction = correction_by(map, claim);
@@ -89,7 +96,7 @@ std::optional<scene::DriftSample> measure_drift(const scene::MapVersion& map,
   if (!drift) return std::nullopt;
   std::optional<core::Matrix6d> with_loops;
   if (!map.loops.empty())
-    with_loops = covariance_with_loops(map, claim.match, claim.query, scale.bias);
+    with_loops = DriftPaths(map).covariance(claim.match, claim.query, scale.bias);
   return drift_sample(difference(drift->a_from_b, claim.match_from_query), drift->covariance,
                       with_loops, config);
 }

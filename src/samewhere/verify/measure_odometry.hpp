@@ -5,6 +5,7 @@
 #include <samewhere/core/verdict.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/verify/config.hpp>
+#include <samewhere/verify/drift_path.hpp>
 #include <samewhere/verify/systematic_drift.hpp>
 
 namespace samewhere::verify {
@@ -28,6 +29,10 @@ core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
 // The same, with depth under covariances that are as large as the loops closed so far show
 // (variance_factor.hpp); where it passes the gate, also by odometry and those loops together.
 core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
+                                        const ScaleErrors& scale, const Config& config);
+
+// The same for several claims in one map.
+core::OdometryEvidence measure_odometry(DriftPaths& paths, const scene::LoopEdge& claim,
                                         const ScaleErrors& scale, const Config& config);
 
 // What the loop `claim`, if it is closed in this map, tells of odometry. Nothing without depth, and
