@@ -15,14 +15,15 @@ constexpr double kMaxChiSquare = 21.1;  // 3 degrees of freedom, 99.99 %
 
 double variance_of(double sigma) { return sigma * sigma; }
 
-// Adds what images and odometry differ by, if the covariances do not explain it.
-void enlarge_if_contradicted(const Eigen::Vector3d& difference, const Eigen::Matrix3d& visual,
+// Adds what images and odometry differ by, if the covariances do not explain it: then true.
+bool enlarge_if_contradicted(const Eigen::Vector3d& difference, const Eigen::Matrix3d& visual,
                              double systematic, double least, Eigen::Ref<Eigen::Matrix3d> own) {
   const Eigen::Matrix3d expected =
       own + kVisualFactor * visual +
       (variance_of(systematic) + variance_of(least)) * Eigen::Matrix3d::Identity();
-  if (difference.dot(expected.inverse() * difference) > kMaxChiSquare)
-    own += difference * difference.transpose();
+  if (difference.dot(expected.inverse() * difference) <= kMaxChiSquare) return false;
+  own += difference * difference.transpose();
+  return true;
 }
 
 geometry::UncertainPose visual_motion(const geometry::UncertainPose& images) {
@@ -50,10 +51,10 @@ void take_height(const geometry::UncertainPose& images, const Eigen::Vector3d& n
 
 }  // namespace
 
-geometry::UncertainPose combine_with_images(const OdometryMotion& odometry,
-                                            const std::optional<geometry::UncertainPose>& images,
-                                            const verify::SystematicDrift& drift) {
-  geometry::UncertainPose motion = odometry.before_from_after;
+CombinedMotion combine_with_images(const OdometryMotion& odometry,
+                                   const std::optional<geometry::UncertainPose>& images,
+                                   const verify::SystematicDrift& drift) {
+  CombinedMotion motion{odometry.before_from_after};
   const auto& normal = odometry.normal_in_before;
   if (!images) {
     if (normal) {
@@ -62,19 +63,20 @@ geometry::UncertainPose combine_with_images(const OdometryMotion& odometry,
     }
     return motion;
   }
-  if (odometry.has_gap) return visual_motion(*images);
+  if (odometry.has_gap) return {visual_motion(*images)};
   if (normal) take_height(*images, *normal, motion);
   const core::Rigid3& moved = motion.a_from_b;
   const double length_m = moved.translation.norm();
-  enlarge_if_contradicted(images->a_from_b.translation - moved.translation,
-                          images->covariance.topLeftCorner<3, 3>(), drift.per_metre * length_m,
-                          kVisual_m, motion.covariance.topLeftCorner<3, 3>());
-  enlarge_if_contradicted(core::log_so3(moved.rotation.conjugate() * images->a_from_b.rotation),
-                          images->covariance.bottomRightCorner<3, 3>(),
-                          drift.rad_per_metre * length_m +
-                              drift.rad_per_radian * core::angle_rad(moved.rotation) +
-                              drift.rad_per_s * odometry.duration_s,
-                          kVisual_rad, motion.covariance.bottomRightCorner<3, 3>());
+  const bool is_elsewhere = enlarge_if_contradicted(
+      images->a_from_b.translation - moved.translation, images->covariance.topLeftCorner<3, 3>(),
+      drift.per_metre * length_m, kVisual_m, motion.covariance.topLeftCorner<3, 3>());
+  const bool is_turned = enlarge_if_contradicted(
+      core::log_so3(moved.rotation.conjugate() * images->a_from_b.rotation),
+      images->covariance.bottomRightCorner<3, 3>(),
+      drift.rad_per_metre * length_m + drift.rad_per_radian * core::angle_rad(moved.rotation) +
+          drift.rad_per_s * odometry.duration_s,
+      kVisual_rad, motion.covariance.bottomRightCorner<3, 3>());
+  motion.is_contradicted = is_elsewhere || is_turned;
   return motion;
 }
 

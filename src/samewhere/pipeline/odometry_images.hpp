@@ -16,6 +16,11 @@ struct OdometryMotion {
   std::optional<Eigen::Vector3d> normal_in_before;
 };
 
+// The motion, and whether images contradict odometry.
+struct CombinedMotion : geometry::UncertainPose {
+  bool is_contradicted = false;
+};
+
 // The motion that odometry and images together give. Images: the body after in the body before by
 // features, none where they show too few landmarks.
 //
@@ -23,8 +28,8 @@ struct OdometryMotion {
 // pitch are those of the images. What no image has seen, as a ride in a lift, leaves the height
 // unknown. The rest of the pose stays that of odometry. Where images contradict it (a slipping
 // wheel), its covariance is enlarged by the difference.
-geometry::UncertainPose combine_with_images(const OdometryMotion& odometry,
-                                            const std::optional<geometry::UncertainPose>& images,
-                                            const verify::SystematicDrift& drift);
+CombinedMotion combine_with_images(const OdometryMotion& odometry,
+                                   const std::optional<geometry::UncertainPose>& images,
+                                   const verify::SystematicDrift& drift);
 
 }  // namespace samewhere::pipeline

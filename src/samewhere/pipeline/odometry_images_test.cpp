@@ -23,6 +23,7 @@ TEST(OdometryImages, OdometryThatMeasuresHeightStaysAsItIs) {
       combine_with_images(half_a_metre({}), motion({0.51, 0.01, 0.01}, 0.001), {});
   EXPECT_EQ(combined.a_from_b.translation, Eigen::Vector3d(0.5, 0.0, 0.0));
   EXPECT_EQ(combined.covariance, half_a_metre({}).before_from_after.covariance);
+  EXPECT_FALSE(combined.is_contradicted);
 }
 
 TEST(OdometryImages, InAPlaneHeightAndTiltAreThoseOfTheImages) {
@@ -50,6 +51,7 @@ TEST(OdometryImages, ASlippingWheelEnlargesTheCovariance) {
   const auto combined = combine_with_images(half_a_metre(kUp), motion({0.1, 0.0, 0.0}, 0.001), {});
   EXPECT_EQ(combined.a_from_b.translation.x(), 0.5);
   EXPECT_GT(combined.covariance(0, 0), 0.4 * 0.4);
+  EXPECT_TRUE(combined.is_contradicted);
   EXPECT_LT(combined.covariance(1, 1), 0.001);
   verify::SystematicDrift drift;
   drift.per_metre = 0.5;

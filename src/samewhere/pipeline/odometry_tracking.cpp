@@ -64,7 +64,7 @@ bool OdometryTracking::is_before_unseen(const scene::Keyframe& keyframe) const {
 std::optional<scene::TrackedView> OdometryTracking::track(const features::View& view,
                                                           const VisibleMap& map,
                                                           const core::Rigid3& guessed,
-                                                          const track::Tracker& tracker) const {
+                                                          const track::Tracker& tracker) {
   const scene::Keyframe& newest = map.version().keyframes.back();
   const double from_s = newest.view.stamp_s;
   const bool is_in_gap = !has_pose(view.stamp_s);
@@ -78,8 +78,12 @@ std::optional<scene::TrackedView> OdometryTracking::track(const features::View& 
                       moved.has_gap ? guessed : moved.before_from_after.a_from_b, tracker, config_);
   const auto images = motion_of(seen);
   if (is_in_gap && !images) return std::nullopt;
-  const geometry::UncertainPose motion =
+  const CombinedMotion motion =
       combine_with_images(moved, images, systematic_drift(config_.odometry));
+  if (images && !moved.has_gap) {
+    ++agreement_.num_compared;
+    agreement_.num_contradicted += motion.is_contradicted ? 1 : 0;
+  }
   track::Track track;
   if (seen) track.matches = seen->matches;
   track.pose = {.frame = view.frame,

@@ -10,6 +10,12 @@
 
 namespace samewhere::pipeline {
 
+// Of the frames with odometry and a pose by their images.
+struct ImageAgreement {
+  int num_compared = 0;
+  int num_contradicted = 0;  // beyond the covariances (odometry_images.hpp)
+};
+
 // Frames posed by odometry from a file: the pose of the newest keyframe, composed with the motion
 // since. Features tell which landmarks a view shows, and what odometry in a plane does not measure
 // (odometry_images.hpp); no visual pose replaces that of odometry.
@@ -32,7 +38,9 @@ class OdometryTracking {
   // the body in the reference of the map; nothing if they cannot.
   std::optional<scene::TrackedView> track(const features::View& view, const VisibleMap& map,
                                           const core::Rigid3& guessed,
-                                          const track::Tracker& tracker) const;
+                                          const track::Tracker& tracker);
+
+  const ImageAgreement& agreement() const { return agreement_; }
 
   // Far enough from the newest keyframe, or with other landmarks.
   bool is_worth_keeping(const scene::MapVersion& map, const scene::TrackedView& tracked) const;
@@ -43,6 +51,7 @@ class OdometryTracking {
   Config config_;
   std::shared_ptr<const OdometryPath> path_;
   std::optional<double> unseen_until_s_;
+  ImageAgreement agreement_;
 };
 
 }  // namespace samewhere::pipeline

@@ -79,6 +79,24 @@ TEST(OdometryTracking, PosesAreThoseOfTheFileHoweverWrong) {
   EXPECT_GT(slam.frames().back().num_inliers, 50) << "and are seen again";
 }
 
+TEST(OdometryTracking, CountsTheFramesAtWhichImagesContradictTheFile) {
+  Config config = short_walk();
+  config.close_loops = false;
+  core::Trajectory odometry = true_poses(config);
+  Slam right(config);
+  walk(right, config, odometry);
+  EXPECT_GT(right.odometry_agreement().num_compared, 15);
+  EXPECT_EQ(right.odometry_agreement().num_contradicted, 0);
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    core::Rigid3& pose = odometry[i].world_from_camera;
+    pose.rotation = (pose.rotation * core::exp_so3({0.0, 0.03 * i, 0.0})).normalized();
+  }
+  Slam turned(config);
+  walk(turned, config, odometry);
+  EXPECT_GT(turned.odometry_agreement().num_contradicted,
+            turned.odometry_agreement().num_compared / 2);
+}
+
 TEST(OdometryTracking, InThreadsAndInTurnTheSameBits) {
   Config in_turn = short_walk();
   in_turn.threads = false;

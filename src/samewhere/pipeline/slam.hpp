@@ -72,6 +72,8 @@ class Slam {
   const std::vector<track::ScaleDriftInterval>& scale_drift() const {
     return tracking_.scale_drift();
   }
+  // Whether images agree with odometry from a file. Zeros without one.
+  ImageAgreement odometry_agreement() const { return tracking_.odometry_agreement(); }
   // How the relocalizations of the session ended.
   const RelocalizationCounts& relocalizations() const { return tracking_.relocalizations(); }
   // How often the map, with all its poses, was discarded for a new one.

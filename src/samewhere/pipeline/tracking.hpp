@@ -73,6 +73,10 @@ class Tracking {
   std::string why_not_initialized() const { return initialization_.why_not(); }
   // Monocular: where the scale is suspected to have drifted, in the order of time.
   const std::vector<track::ScaleDriftInterval>& scale_drift() const { return scale_drift_; }
+  // Whether images agree with odometry from a file. Zeros without one.
+  ImageAgreement odometry_agreement() const {
+    return odometry_ ? odometry_->agreement() : ImageAgreement{};
+  }
   // How the relocalizations of the session ended.
   const RelocalizationCounts& relocalizations() const { return relocalization_.counts(); }
   // How often the map, with all its poses, was discarded for a new one.

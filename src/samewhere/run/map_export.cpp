@@ -34,8 +34,8 @@ std::vector<report::Figure> figures_of_map(const scene::MapHeader& header,
   for (std::size_t i = 0; i < map.keyframes.size(); ++i)
     sessions.insert(map.keyframes[i].view.frame.session());
   for (const core::FramePose& frame : extras.frames) sessions.insert(frame.frame.session());
-  const auto num_measured = std::count_if(extras.frames.begin(), extras.frames.end(),
-                                          [](const core::FramePose& f) { return f.is_measured; });
+  const auto num_measured =
+      std::count_if(extras.frames.begin(), extras.frames.end(), core::is_confirmed);
   std::vector<report::Figure> figures = {
       {"sessions", std::to_string(sessions.size())},
       {"keyframes / landmarks",

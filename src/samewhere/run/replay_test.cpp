@@ -113,7 +113,7 @@ TEST(Replay, ARelocalizationNeedsNoRelativePose) {
   alone.geometry->match_from_query.reset();
   core::LedgerRow row = verified(0, alone);
   row.candidate.origin = core::Origin::kRelocalization;
-  row.verdict = verify::decide(row.candidate, alone, {}, {.min_views = 1, .require_pose = false});
+  row.verdict = verify::decide(row.candidate, alone, {}, {.require_pose = false, .min_views = 1});
   ASSERT_TRUE(core::is_loop(row.verdict));
   EXPECT_EQ(replay({row}, {})[0].outcome, Replay::kSame);
   EXPECT_EQ(replay({row}, {.min_inliers = 80})[0].outcome, Replay::kChanged);

@@ -198,8 +198,11 @@ void record_figures(const MappedSlam& mapped, const pipeline::Config& config, co
   record.false_loops = false_loops_of(record.ledger, evaluation);
 }
 
-void report_coverage(const RunOdometry& odometry, report::RunRecord& record) {
+void report_coverage(const RunOdometry& odometry, const pipeline::Slam& slam,
+                     report::RunRecord& record) {
   record.figures.push_back(odometry.figure());
+  if (auto agreement = odometry.figure(slam.odometry_agreement()))
+    record.figures.push_back(*std::move(agreement));
   if (!record.input_error) record.input_error = odometry.error();
 }
 
@@ -285,7 +288,7 @@ RunOutcome run_slam(std::unique_ptr<core::Source> unbuffered, const pipeline::Co
   record_for_page(mapped, config, record);
   if (!plan.known.empty()) add_known_thumbnails(plan.known, record);
   record_figures(mapped, config, plan, truth, record);
-  if (odometry) report_coverage(*odometry, record);
+  if (odometry) report_coverage(*odometry, slam, record);
   feed.report();
   return outcome;
 }

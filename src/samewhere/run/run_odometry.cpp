@@ -71,6 +71,20 @@ report::Figure RunOdometry::figure() const {
   return report::figure("frames without odometry", "{}", num_without_);
 }
 
+std::optional<report::Figure> RunOdometry::figure(const pipeline::ImageAgreement& agreement) const {
+  constexpr double kMany = 0.2;
+  const auto& [num_compared, num_contradicted] = agreement;
+  if (num_compared == 0) return std::nullopt;
+  if (num_contradicted > kMany * num_compared) {
+    spdlog::warn(
+        "{}: images contradict the odometry at {} of {} frames; expected: stamps of the clock of "
+        "the images, poses of the body that carries the camera, wheels that do not slip",
+        settings_.file, num_contradicted, num_compared);
+  }
+  return report::figure("frames whose images contradict odometry", "{} of {}", num_contradicted,
+                        num_compared);
+}
+
 std::optional<std::string> RunOdometry::error() const {
   if (num_frames_ == 0 || num_without_ < num_frames_) return std::nullopt;
   return no_overlap(last_frame_s_);

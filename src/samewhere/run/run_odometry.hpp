@@ -8,6 +8,7 @@
 #include <samewhere/core/source.hpp>
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/pipeline/odometry_path.hpp>
+#include <samewhere/pipeline/odometry_tracking.hpp>
 #include <samewhere/report/figure.hpp>
 
 namespace samewhere::run {
@@ -32,6 +33,9 @@ class RunOdometry {
   // When all frames were seen: how many have no odometry, with a warning if any. An error: none
   // has.
   report::Figure figure() const;
+  // At how many frames images contradict odometry, with a warning if at many: clocks that differ, a
+  // wrong extrinsic, slip. Nothing where none could be compared.
+  std::optional<report::Figure> figure(const pipeline::ImageAgreement& agreement) const;
   std::optional<std::string> error() const;
 
  private:
