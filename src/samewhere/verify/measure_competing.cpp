@@ -42,6 +42,27 @@ struct Fit {
   double log_det = 0.0;  // of the covariance
 };
 
+// A chain that is made longer at its beginning, with its constant errors.
+class LongerChain {
+ public:
+  LongerChain(core::KeyframeId end, const SystematicDrift& bias) : chain_(end), systematic_(bias) {}
+
+  core::KeyframeId begin() const { return chain_.begin(); }
+  const OdometryChain& chain() const { return chain_.chain(); }
+  core::Matrix6d systematic() const { return systematic_.covariance(); }
+  // One edge more; false at the origin, which has none.
+  bool climb(const scene::MapVersion& map) {
+    const core::KeyframeId here = chain_.begin();
+    if (!chain_.climb(map)) return false;
+    systematic_.lengthen(map, here, chain_.begin());
+    return true;
+  }
+
+ private:
+  ClimbingChain chain_;
+  DriftSum systematic_;
+};
+
 class Odometry {
  public:
   Odometry(const scene::MapVersion& map, const SystematicDrift& bias, const Config& config)
@@ -50,12 +71,13 @@ class Odometry {
   Odometry& operator=(const Odometry&) = delete;
 
   // The chain leads to the query, from a keyframe that the map places relative to the match.
-  Fit fit(const scene::LoopEdge& claim, const OdometryChain& chain) const {
+  // `systematic`: of its constant errors.
+  Fit fit(const scene::LoopEdge& claim, const OdometryChain& chain,
+          const core::Matrix6d& systematic) const {
     const core::Rigid3 claimed = inverse(world_from_body(map_, chain.begin)) *
                                  world_from_body(map_, claim.match) * claim.match_from_query;
     const core::Vector6d error = difference(chain.begin_from_end.a_from_b, claimed);
-    const Eigen::LDLT<core::Matrix6d> covariance(chain.begin_from_end.covariance +
-                                                 systematic_covariance(map_, chain.path, bias_) +
+    const Eigen::LDLT<core::Matrix6d> covariance(chain.begin_from_end.covariance + systematic +
                                                  loop_information(config_).inverse());
     return {error.dot(covariance.solve(error)), covariance.vectorD().array().log().sum()};
   }
@@ -63,7 +85,11 @@ class Odometry {
   std::optional<Fit> fit(const scene::LoopEdge& claim, core::KeyframeId begin) const {
     const auto chain = odometry_between(map_, begin, claim.query);
     if (!chain) return std::nullopt;
-    return fit(claim, *chain);
+    return fit(claim, *chain, systematic_covariance(map_, chain->path, bias_));
+  }
+  LongerChain to(core::KeyframeId end) const { return {end, bias_}; }
+  double chi2(const scene::LoopEdge& claim, const LongerChain& chain) const {
+    return fit(claim, chain.chain(), chain.systematic()).chi2;
   }
 
  private:
@@ -86,23 +112,23 @@ Contradiction contradiction_of(const scene::MapVersion& map, const scene::LoopEd
   std::map<core::KeyframeId, const scene::LoopEdge*> loop_of;
   for (const auto& loop : map.loops) loop_of.try_emplace(loop.query, &loop);
   Contradiction found;
-  ClimbingChain to_claim(claim.query);
-  ClimbingChain to_first(claim.query);
+  LongerChain to_claim = odometry.to(claim.query);
+  LongerChain to_first = odometry.to(claim.query);
   do {
     const core::KeyframeId at = to_claim.begin();
     if (found.first != nullptr && to_first.begin() != at) to_first.climb(map);
     const auto loop = loop_of.find(at);
     if (loop == loop_of.end()) continue;
-    const double chi2 = odometry.fit(claim, to_claim.chain()).chi2;
+    const double chi2 = odometry.chi2(claim, to_claim);
     const bool is_with_claim =
         chi2 <= config.max_competing_chi_square &&
-        (found.first == nullptr || chi2 <= odometry.fit(*found.first, to_first.chain()).chi2);
+        (found.first == nullptr || chi2 <= odometry.chi2(*found.first, to_first));
     if (is_with_claim) {
       found.base = at;
       return found;
     }
     found.first = loop->second;
-    to_first = ClimbingChain(at);
+    to_first = odometry.to(at);
   } while (to_claim.begin() > claim.match && to_claim.climb(map));
   return found;
 }

@@ -9,14 +9,11 @@
 namespace samewhere::verify {
 namespace {
 
-// Columns: an error of 1 of distances, of turns, of the heading by distance and by time, and of
-// rotation about each axis of the body by distance and by time.
-constexpr int kErrors = 10;
-using Effects = Eigen::Matrix<double, 3, kErrors>;
+using Effects = DriftSum::Effects;
 
-// How an edge moves and turns what comes after it, in the frame of the beginning.
+// How an edge moves and turns what comes after it, in the frame of the end.
 struct EdgeEffects {
-  Eigen::Vector3d pivot;  // the child, in the beginning
+  Eigen::Vector3d pivot;  // the child, in the end
   Effects shift = Effects::Zero();
   Effects turn = Effects::Zero();
 };
@@ -33,22 +30,22 @@ Eigen::Vector3d heading_axis(const core::Matrix6d& information) {
 
 // `sign`: 1 if the path goes from the parent to the child.
 EdgeEffects effects_of(const scene::MapVersion& map, const scene::Keyframe& child,
-                       const core::Rigid3& begin_from_parent, double sign,
+                       const core::Rigid3& end_from_parent, double sign,
                        const SystematicDrift& drift) {
   const scene::OdometryEdge& edge = *child.odometry;
-  const core::Rigid3 begin_from_child = begin_from_parent * edge.parent_from_keyframe;
-  const Eigen::Matrix3d begin_from_child_axes = begin_from_child.rotation.toRotationMatrix();
+  const core::Rigid3 end_from_child = end_from_parent * edge.parent_from_keyframe;
+  const Eigen::Matrix3d end_from_child_axes = end_from_child.rotation.toRotationMatrix();
   const double length_m = edge.parent_from_keyframe.translation.norm();
   const double duration_s = std::abs(child.view.stamp_s - map.at(edge.parent).view.stamp_s);
   Eigen::Vector3d axis = heading_axis(edge.information);
   const double tilt = axis.isZero() ? 1.0 : drift.tilt_ratio;
   // the direction of an eigenvector is arbitrary
   if (axis.sum() < 0.0) axis = -axis;
-  EdgeEffects effects{begin_from_child.translation};
+  EdgeEffects effects{end_from_child.translation};
   effects.shift.col(0) =
-      sign * drift.per_metre * (begin_from_parent.rotation * edge.parent_from_keyframe.translation);
+      sign * drift.per_metre * (end_from_parent.rotation * edge.parent_from_keyframe.translation);
   const auto turn = [&](const Eigen::Vector3d& turn_in_child) -> Eigen::Vector3d {
-    return sign * (begin_from_child_axes * turn_in_child);
+    return sign * (end_from_child_axes * turn_in_child);
   };
   effects.turn.col(1) =
       turn(drift.rad_per_radian * core::log_so3(edge.parent_from_keyframe.rotation));
@@ -67,44 +64,42 @@ bool is_child_of(const scene::MapVersion& map, core::KeyframeId child, core::Key
   return odometry && odometry->parent == parent;
 }
 
-// Of the position, what a turn of a large heading error leaves out to first order.
-double second_order_m(const std::vector<EdgeEffects>& edges, const Effects& turned,
-                      const Eigen::Vector3d& end) {
-  double reach_m = 0.0;
-  for (const EdgeEffects& edge : edges) reach_m = std::max(reach_m, (end - edge.pivot).norm());
-  return 0.5 * turned.squaredNorm() * reach_m;
+}  // namespace
+
+void DriftSum::lengthen(const scene::MapVersion& map, core::KeyframeId here,
+                        core::KeyframeId before) {
+  if (drift_.is_none()) return;
+  const bool is_down = is_child_of(map, here, before);
+  const scene::Keyframe& child = map.at(is_down ? here : before);
+  const core::Rigid3& parent_from_child = child.odometry->parent_from_keyframe;
+  const core::Rigid3 end_from_before =
+      end_from_begin_ * (is_down ? inverse(parent_from_child) : parent_from_child);
+  const EdgeEffects edge = effects_of(map, child, is_down ? end_from_before : end_from_begin_,
+                                      is_down ? 1.0 : -1.0, drift_);
+  shift_ += edge.shift + core::skew(edge.pivot) * edge.turn;
+  turn_ += edge.turn;
+  reach_m_ = std::max(reach_m_, edge.pivot.norm());
+  end_from_begin_ = end_from_before;
 }
 
-}  // namespace
+core::Matrix6d DriftSum::covariance() const {
+  if (drift_.is_none()) return core::Matrix6d::Zero();
+  Eigen::Matrix<double, 6, kErrors> by_error;
+  by_error.topRows<3>() = end_from_begin_.rotation.conjugate().toRotationMatrix() * shift_;
+  by_error.bottomRows<3>() = turn_;
+  core::Matrix6d covariance = by_error * by_error.transpose();
+  // what a turn of a large heading error leaves out to first order
+  const double rest_m = 0.5 * turn_.squaredNorm() * reach_m_;
+  covariance.diagonal().head<3>().array() += rest_m * rest_m;
+  return covariance;
+}
 
 core::Matrix6d systematic_covariance(const scene::MapVersion& map,
                                      const std::vector<core::KeyframeId>& path,
                                      const SystematicDrift& drift) {
-  if (drift.is_none()) return core::Matrix6d::Zero();
-  std::vector<EdgeEffects> edges;
-  core::Rigid3 begin_from_here;
-  for (std::size_t i = path.size() - 1; i > 0; --i) {
-    const bool is_down = is_child_of(map, path[i - 1], path[i]);
-    const scene::Keyframe& child = map.at(is_down ? path[i - 1] : path[i]);
-    const core::Rigid3& parent_from_child = child.odometry->parent_from_keyframe;
-    const core::Rigid3 begin_from_next =
-        begin_from_here * (is_down ? parent_from_child : inverse(parent_from_child));
-    edges.push_back(effects_of(map, child, is_down ? begin_from_here : begin_from_next,
-                               is_down ? 1.0 : -1.0, drift));
-    begin_from_here = begin_from_next;
-  }
-  const Eigen::Vector3d end = begin_from_here.translation;
-  Eigen::Matrix<double, 6, kErrors> by_error = Eigen::Matrix<double, 6, kErrors>::Zero();
-  Effects turned = Effects::Zero();
-  for (const EdgeEffects& edge : edges) {
-    by_error.topRows<3>() += edge.shift - core::skew(end - edge.pivot) * edge.turn;
-    turned += edge.turn;
-  }
-  by_error.bottomRows<3>() = begin_from_here.rotation.toRotationMatrix().transpose() * turned;
-  core::Matrix6d covariance = by_error * by_error.transpose();
-  const double rest_m = second_order_m(edges, turned, end);
-  covariance.diagonal().head<3>().array() += rest_m * rest_m;
-  return covariance;
+  DriftSum sum(drift);
+  for (std::size_t i = 1; i < path.size(); ++i) sum.lengthen(map, path[i - 1], path[i]);
+  return sum.covariance();
 }
 
 }  // namespace samewhere::verify
