@@ -69,6 +69,8 @@ void add_odometry(const std::optional<core::OdometryEvidence>& odometry,
   const auto gain = odometry
                         ? std::max(odometry->look_alike_gain, odometry->look_alike_gain_with_loops)
                         : std::nullopt;
+  if (odometry && odometry->variance_factor)
+    figures.add("variance factor of odometry, from closed loops", odometry->variance_factor);
   figures.add("gain over a look-alike place", gain, "",
               config.prior == verify::Prior::kRepetitive ? at_least(config.min_look_alike_gain)
                                                          : std::string());

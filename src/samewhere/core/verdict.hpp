@@ -72,6 +72,9 @@ struct OdometryEvidence {
   // without loops.
   std::optional<double> look_alike_gain_with_loops;
   std::optional<double> mahalanobis_squared_with_loops;
+  // The loops closed so far show that the covariance of odometry is too large: what it was
+  // multiplied by. None: nothing was learned.
+  std::optional<double> variance_factor;
 };
 
 // How much the candidate bends the trajectory from its match to its query: root mean square

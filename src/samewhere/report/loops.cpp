@@ -30,6 +30,7 @@ void add_odometry(Json& scores, const core::OdometryEvidence& odometry) {
   add("look_alike_gain", odometry.look_alike_gain);
   add("look_alike_gain_with_loops", odometry.look_alike_gain_with_loops);
   add("mahalanobis_squared_with_loops", odometry.mahalanobis_squared_with_loops);
+  add("variance_factor", odometry.variance_factor);
 }
 
 void add_competing_loop(Json& scores, const core::CompetingLoopEvidence& loop) {

@@ -134,7 +134,8 @@ class Entry {
                            score("odometry_sigma_m"),
                            score("look_alike_gain"),
                            score("look_alike_gain_with_loops"),
-                           score("mahalanobis_squared_with_loops")};
+                           score("mahalanobis_squared_with_loops"),
+                           score("variance_factor")};
     if (const auto rmse_m = score("deformation_rmse_m"))
       evidence.deformation = {*rmse_m, score("deformation_path_m").value_or(0.0)};
     if (scores_.contains("competing_loop"))

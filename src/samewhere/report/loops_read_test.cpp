@@ -105,6 +105,29 @@ TEST_F(LoopsRead, SequenceAndOriginAreReadBack) {
   EXPECT_EQ(core::evidence_of(found.at(0).verdict).geometry->overlap_ratio, 0.75);
 }
 
+TEST_F(LoopsRead, WhatOdometrySaysIsReadBack) {
+  core::Evidence by_odometry = evidence(0.8, 100, 50);
+  by_odometry.odometry = core::OdometryEvidence{.correction_m = 0.5,
+                                                .correction_rad = 0.02,
+                                                .mahalanobis_squared = 3.5,
+                                                .sigma_m = 0.75,
+                                                .look_alike_gain = 20.0,
+                                                .look_alike_gain_with_loops = 30.0,
+                                                .mahalanobis_squared_with_loops = 2.5,
+                                                .variance_factor = 0.25};
+  const core::Candidate about = candidate(0, 9, 2, 0.8);
+  const std::string text =
+      loops_json({{about, core::LoopClosure{.candidate = about.id, .evidence = by_odometry}}});
+  const core::Ledger found = read(text);
+  EXPECT_EQ(loops_json(found), text);
+  const auto odometry = *core::evidence_of(found.at(0).verdict).odometry;
+  EXPECT_EQ(odometry.sigma_m, 0.75);
+  EXPECT_EQ(odometry.look_alike_gain, 20.0);
+  EXPECT_EQ(odometry.look_alike_gain_with_loops, 30.0);
+  EXPECT_EQ(odometry.mahalanobis_squared_with_loops, 2.5);
+  EXPECT_EQ(odometry.variance_factor, 0.25);
+}
+
 TEST_F(LoopsRead, ACompetingLoopIsReadBack) {
   core::Evidence evidence_of_both = evidence(0.8, 100, 50);
   evidence_of_both.competing_loop = core::CompetingLoopEvidence{

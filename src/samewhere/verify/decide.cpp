@@ -79,6 +79,12 @@ std::string scale_drift_text(const Evidence& evidence) {
   return fmt::format(" with scale {:.2f}", pose->scale);
 }
 
+// By what the covariance of odometry was multiplied.
+std::string variance_factor_text(const core::OdometryEvidence& odometry) {
+  if (!odometry.variance_factor) return "";
+  return fmt::format(", its variance times {:.2f} as closed loops show", *odometry.variance_factor);
+}
+
 std::optional<Rejection> check_odometry(const Candidate& candidate, const Evidence& evidence,
                                         const Config& config) {
   if (!evidence.odometry ||
@@ -87,10 +93,10 @@ std::optional<Rejection> check_odometry(const Candidate& candidate, const Eviden
   return rejection(
       candidate, evidence, Refusal::kOdometry,
       fmt::format("would move the camera by {:.2f} m and {:.1f} degrees{}, more than odometry can "
-                  "have drifted (chi-square {:.0f}, at most {:.0f})",
+                  "have drifted (chi-square {:.0f}, at most {:.0f}{})",
                   evidence.odometry->correction_m, evidence.odometry->correction_rad * kDegrees,
                   scale_drift_text(evidence), evidence.odometry->mahalanobis_squared,
-                  config.max_odometry_chi_square));
+                  config.max_odometry_chi_square, variance_factor_text(*evidence.odometry)));
 }
 
 std::optional<Rejection> check_deformation(const Candidate& candidate, const Evidence& evidence,
@@ -194,9 +200,10 @@ std::optional<core::Verdict> check_evidence(const Candidate& candidate, const Ev
   if (!gain) return ambiguous("appearance alone: cannot be told from a look-alike place");
   if (*gain >= config.min_look_alike_gain) return std::nullopt;
   return ambiguous(fmt::format(
-      "odometry is too uncertain (standard deviation {:.2f} m) to tell this place from a "
+      "odometry is too uncertain (standard deviation {:.2f} m{}) to tell this place from a "
       "look-alike place nearby (gain {:.1f}, {:.1f} needed)",
-      odometry.sigma_m.value_or(0.0), *gain, config.min_look_alike_gain));
+      odometry.sigma_m.value_or(0.0), variance_factor_text(odometry), *gain,
+      config.min_look_alike_gain));
 }
 
 std::optional<core::Verdict> check_other_views(const Candidate& candidate, const Evidence& evidence,

@@ -65,6 +65,21 @@ TEST(Decide, EachCheckRejectsUnderItsOwnName) {
   EXPECT_EQ(stage(evidence, config), "accepted");
 }
 
+TEST(Decide, TheReasonNamesWhatLoopsHaveTaughtOfOdometry) {
+  const Config config;
+  core::Evidence evidence = good_evidence();
+  evidence.odometry->mahalanobis_squared = 2.0 * config.max_odometry_chi_square;
+  const auto reason = [&] {
+    return std::string(core::reason_of(decide(candidate(), evidence, {}, config)));
+  };
+  EXPECT_EQ(reason().find("variance"), std::string::npos) << reason();
+  evidence.odometry->variance_factor = 0.25;
+  EXPECT_NE(reason().find("its variance times 0.25"), std::string::npos) << reason();
+  evidence.odometry->mahalanobis_squared = 2.0;
+  evidence.odometry->look_alike_gain = config.min_look_alike_gain - 0.1;
+  EXPECT_NE(reason().find("its variance times 0.25"), std::string::npos) << reason();
+}
+
 TEST(Decide, WithRequirePoseInliersAloneAreNoLoop) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->match_from_query.reset();
