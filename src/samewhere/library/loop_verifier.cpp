@@ -96,7 +96,8 @@ LoopVerdict LoopVerifier::verify(const Frame& match, const Frame& query,
     const scene::MapVersion map = map_of(old.view, now.view, odometry);
     const pipeline::KeyframeOf keyframe_of{{kMatch, core::KeyframeId(0)},
                                            {kQuery, core::KeyframeId(1)}};
-    const pipeline::MapVersionContext by_odometry(map, keyframe_of, kQuery, parts_->config);
+    verify::OdometryTree tree = pipeline::odometry_tree(parts_->config);
+    const pipeline::MapVersionContext by_odometry(map, tree, keyframe_of, kQuery, parts_->config);
     const verify::WithoutMap without_odometry;
     const verify::MapContext* context = &without_odometry;
     if (odometry) context = &by_odometry;

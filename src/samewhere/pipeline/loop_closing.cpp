@@ -45,18 +45,18 @@ bool shows_landmarks(const scene::MapVersion& map, core::KeyframeId keyframe) {
 
 }  // namespace
 
-core::Verdict reverify(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                       const core::LedgerRow& accepted, const Config& config) {
+core::Verdict reverify(const scene::MapVersion& map, verify::OdometryTree& odometry,
+                       const scene::LoopEdge& loop, const core::LedgerRow& accepted,
+                       const Config& config) {
+  verify::MapDrift drift(map, odometry, scale_errors(config), config.verify);
   core::Evidence evidence = core::evidence_of(accepted.verdict);
-  if (evidence.odometry)
-    evidence.odometry = verify::measure_odometry(map, loop, scale_errors(config), config.verify);
-  evidence.competing_loop =
-      verify::measure_competing_loop(map, loop, scale_errors(config), config.verify);
+  if (evidence.odometry) evidence.odometry = verify::measure_odometry(drift, loop);
+  evidence.competing_loop = verify::measure_competing_loop(drift, loop);
   return verify::decide(accepted.candidate, evidence, {}, config.verify);
 }
 
 LoopClosing::LoopClosing(const Config& config)
-    : config_(config), detector_(config, loop_settings(config)) {}
+    : config_(config), detector_(config, loop_settings(config)), odometry_(odometry_tree(config)) {}
 
 LoopClosing::LoopClosing(const Config& config, const scene::StoredMap& known)
     : LoopClosing(config) {
@@ -92,7 +92,7 @@ LoopAnswer LoopClosing::answer(const FindLoops& question) {
     detector_.remember(*answer.descriptor, view);
     return answer;
   }
-  const MapVersionContext context(map, keyframe_of_, view.frame, config_);
+  const MapVersionContext context(map, odometry_, keyframe_of_, view.frame, config_);
   answer.rows = detector_.detect(question.image, view, context, timings_);
   answer.loops = accepted_loops(context, map, answer.rows);
   const PlaceIndex& index = detector_.index();
@@ -118,7 +118,8 @@ LoopAnswer LoopClosing::answer(const FindPlace& question) {
 
 LoopAnswer LoopClosing::answer(const AskAgain& question) {
   const scene::MapVersion& map = question.map;
-  const MapVersionContext context(map, keyframe_of_, map.keyframes.back().view.frame, config_);
+  const MapVersionContext context(map, odometry_, keyframe_of_, map.keyframes.back().view.frame,
+                                  config_);
   LoopAnswer answer{.map_number = map.number};
   answer.rows = detector_.ask_again(context, timings_);
   answer.loops = accepted_loops(context, map, answer.rows);

@@ -10,8 +10,10 @@
 namespace samewhere::pipeline {
 
 // The verdict on an accepted loop in a later map version, with the loops that were closed since.
-core::Verdict reverify(const scene::MapVersion& map, const scene::LoopEdge& loop,
-                       const core::LedgerRow& accepted, const Config& config);
+// `odometry` follows the map from here on.
+core::Verdict reverify(const scene::MapVersion& map, verify::OdometryTree& odometry,
+                       const scene::LoopEdge& loop, const core::LedgerRow& accepted,
+                       const Config& config);
 
 // The third stage: detects the loops of a keyframe and the places of a LOST view. Owns the place
 // index and the ledger.
@@ -38,7 +40,8 @@ class LoopClosing {
   core::Timings timings_;
   LoopDetector detector_;
   core::Ledger ledger_;
-  KeyframeOf keyframe_of_;  // of the remembered views
+  KeyframeOf keyframe_of_;         // of the remembered views
+  verify::OdometryTree odometry_;  // of the map of the last question
 };
 
 }  // namespace samewhere::pipeline

@@ -6,23 +6,27 @@
 #include <samewhere/pipeline/odometry_drift.hpp>
 #include <samewhere/scene/known_depths.hpp>
 #include <samewhere/verify/measure_competing.hpp>
+#include <samewhere/verify/measure_odometry.hpp>
 
 namespace samewhere::pipeline {
 
 verify::ScaleErrors scale_errors(const Config& config) {
-  return {.creep = config.optimize.odometry_scale_sigma,
-          .loop = config.optimize.loop_scale_sigma,
-          .bias = systematic_drift(config.odometry)};
+  return {.creep = config.optimize.odometry_scale_sigma, .loop = config.optimize.loop_scale_sigma};
 }
 
-MapVersionContext::MapVersionContext(const scene::MapVersion& map, const KeyframeOf& keyframe_of,
-                                     core::FrameId query, const Config& config)
+verify::OdometryTree odometry_tree(const Config& config) {
+  return verify::OdometryTree(systematic_drift(config.odometry));
+}
+
+MapVersionContext::MapVersionContext(const scene::MapVersion& map, verify::OdometryTree& odometry,
+                                     const KeyframeOf& keyframe_of, core::FrameId query,
+                                     const Config& config)
     : map_(map),
       keyframe_of_(keyframe_of),
       config_(config),
       query_(query),
       is_without_depth_(scene::is_without_depth(map)),
-      drift_paths_(map) {}
+      drift_(map, odometry, scale_errors(config), config.verify) {}
 
 bool MapVersionContext::is_connected(core::FrameId match) const {
   return are_one_place(query_, match);
@@ -54,19 +58,17 @@ std::optional<core::DeformationEvidence> MapVersionContext::measure_deformation(
 
 std::optional<core::OdometryEvidence> MapVersionContext::measure_odometry(
     const core::Candidate& candidate, const core::Sim3& match_from_query) const {
-  return verify::measure_odometry(drift_paths_, edge_of(candidate, match_from_query),
-                                  scale_errors(config_), config_.verify);
+  return verify::measure_odometry(drift_, edge_of(candidate, match_from_query));
 }
 
 std::optional<scene::DriftSample> MapVersionContext::measure_drift(
     const scene::LoopEdge& loop) const {
-  return verify::measure_drift(map_, loop, scale_errors(config_), config_.verify);
+  return verify::measure_drift(drift_, loop);
 }
 
 std::optional<core::CompetingLoopEvidence> MapVersionContext::measure_competing_loop(
     const core::Candidate& candidate, const core::Sim3& match_from_query) const {
-  return verify::measure_competing_loop(map_, edge_of(candidate, match_from_query),
-                                        scale_errors(config_), config_.verify);
+  return verify::measure_competing_loop(drift_, edge_of(candidate, match_from_query));
 }
 
 std::optional<core::CompetingPlaceEvidence> MapVersionContext::measure_competing_place(
@@ -75,9 +77,8 @@ std::optional<core::CompetingPlaceEvidence> MapVersionContext::measure_competing
   const auto other_pose = core::match_from_query_of(other.verdict);
   if (!pose || !other_pose) return std::nullopt;
   if (are_one_place(row.candidate.match, other.candidate.match)) return std::nullopt;
-  return verify::measure_competing_place(map_, edge_of(row.candidate, *pose),
-                                         edge_of(other.candidate, *other_pose),
-                                         scale_errors(config_), config_.verify);
+  return verify::measure_competing_place(drift_, edge_of(row.candidate, *pose),
+                                         edge_of(other.candidate, *other_pose));
 }
 
 scene::LoopEdge MapVersionContext::edge_of(const core::Candidate& candidate,

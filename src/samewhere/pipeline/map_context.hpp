@@ -8,7 +8,7 @@
 #include <samewhere/pipeline/config.hpp>
 #include <samewhere/scene/map_version.hpp>
 #include <samewhere/verify/map_context.hpp>
-#include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/map_drift.hpp>
 
 namespace samewhere::pipeline {
 
@@ -16,13 +16,15 @@ namespace samewhere::pipeline {
 using KeyframeOf = std::map<core::FrameId, core::KeyframeId>;
 
 verify::ScaleErrors scale_errors(const Config& config);
+verify::OdometryTree odometry_tree(const Config& config);
 
 // A map version in the verification of one query. Not copyable: refers to its arguments, which
 // outlive it.
 class MapVersionContext final : public verify::MapContext {
  public:
-  MapVersionContext(const scene::MapVersion& map, const KeyframeOf& keyframe_of,
-                    core::FrameId query, const Config& config);
+  // `odometry` follows the map from here on.
+  MapVersionContext(const scene::MapVersion& map, verify::OdometryTree& odometry,
+                    const KeyframeOf& keyframe_of, core::FrameId query, const Config& config);
 
   bool is_connected(core::FrameId match) const override;
   bool has_places() const override { return true; }
@@ -62,7 +64,7 @@ class MapVersionContext final : public verify::MapContext {
   core::FrameId query_;
   bool is_without_depth_;
   mutable std::map<core::FrameId, std::set<core::KeyframeId>> neighbours_;
-  mutable verify::DriftPaths drift_paths_;
+  mutable verify::MapDrift drift_;
 };
 
 }  // namespace samewhere::pipeline

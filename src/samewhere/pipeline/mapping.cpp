@@ -182,7 +182,8 @@ bool Mapping::correct(const AcceptedLoop& heard) {
 std::optional<AcceptedLoop> Mapping::reverified(AcceptedLoop heard) {
   const auto known = accepted_.find(heard.edge.cause);
   if (known == accepted_.end()) return heard;
-  const core::Verdict verdict = reverify(map_, heard.edge, known->second, config_);
+  verify::OdometryTree odometry = odometry_tree(config_);
+  const core::Verdict verdict = reverify(map_, odometry, heard.edge, known->second, config_);
   const auto* loop = std::get_if<core::LoopClosure>(&verdict);
   if (loop == nullptr) {
     add_row({known->second.candidate, verdict});

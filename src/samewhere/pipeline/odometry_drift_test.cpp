@@ -7,7 +7,7 @@
 #include <samewhere/evaluate/degraded_odometry.hpp>
 #include <samewhere/pipeline/map_context.hpp>
 #include <samewhere/pipeline/odometry_path.hpp>
-#include <samewhere/verify/odometry_chain.hpp>
+#include <samewhere/verify/expected_end.hpp>
 
 namespace samewhere::pipeline {
 namespace {
@@ -94,15 +94,13 @@ double mean_nees(const Condition& condition, std::size_t num_edges) {
         evaluate::degraded(truth, evaluate::degradation_of(condition.kinds), seed);
     const OdometryPath path(config, rows_of(odometry));
     const scene::MapVersion map = chain_of(odometry, path);
-    const auto chain =
-        verify::odometry_between(map, core::KeyframeId(0), core::KeyframeId(num_edges));
-    const core::Matrix6d covariance =
-        chain->begin_from_end.covariance +
-        verify::systematic_covariance(map, chain->path, systematic_drift(config));
+    verify::OdometryTree tree(systematic_drift(config));
+    tree.follow(map);
+    const auto by_odometry = tree.between(core::KeyframeId(0), core::KeyframeId(num_edges));
     const core::Rigid3 known =
         inverse(truth[0].world_from_camera) * truth[5 * num_edges].world_from_camera;
-    const core::Vector6d error = verify::difference(chain->begin_from_end.a_from_b, known);
-    sum += error.dot(covariance.llt().solve(error));
+    const core::Vector6d error = verify::difference(by_odometry->a_from_b, known);
+    sum += error.dot(by_odometry->covariance.llt().solve(error));
   }
   return sum / kSeeds;
 }
@@ -136,9 +134,10 @@ TEST(SystematicDrift, GrowsWithTheDistanceAndNotWithItsRoot) {
   const core::Trajectory truth = two_laps();
   const OdometryPath path(config_of({"", OdometrySensor::kPoor}), rows_of(truth));
   const scene::MapVersion map = chain_of(truth, path);
+  verify::OdometryTree tree({.per_metre = 0.1});
+  tree.follow(map);
   const auto ahead_m = [&](unsigned end) {
-    const auto chain = verify::odometry_between(map, core::KeyframeId(0), core::KeyframeId(end));
-    return std::sqrt(verify::systematic_covariance(map, chain->path, {.per_metre = 0.1})(2, 2));
+    return std::sqrt(tree.systematic_covariance(core::KeyframeId(0), core::KeyframeId(end))(2, 2));
   };
   EXPECT_NEAR(ahead_m(20), 0.1 * 20.0 / 3.0, 1e-6);
   EXPECT_NEAR(ahead_m(80), 0.1 * 80.0 / 3.0, 1e-6);

@@ -84,8 +84,9 @@ TEST_F(LookAlikeRooms, OneTrueLoopThatOverrulesTwoFalseOnesPartsThem) {
   const core::LedgerRow row = accepted(core::CandidateId(9));
   const scene::LoopEdge third = loop(
       2 * kPerRoom, kPerRoom - 1, inverse(map::test_walk(5)) * map::test_walk(6), row.candidate.id);
-  EXPECT_TRUE(core::is_loop(reverify(with_false, third, row, config_)));
-  EXPECT_EQ(core::stage_of(reverify(correction.map, third, row, config_)), "competing");
+  verify::OdometryTree odometry;
+  EXPECT_TRUE(core::is_loop(reverify(with_false, odometry, third, row, config_)));
+  EXPECT_EQ(core::stage_of(reverify(correction.map, odometry, third, row, config_)), "competing");
 }
 
 // Keyframes culled while the false loop was accepted had their parent in the other room.

@@ -1,4 +1,4 @@
-#include <samewhere/pipeline/odometry_drift.hpp>
+#include <samewhere/pipeline/map_context.hpp>
 #include <samewhere/run/position_covariances.hpp>
 #include <samewhere/verify/drift_path.hpp>
 
@@ -15,14 +15,14 @@ std::vector<report::PositionCovariance> position_covariances(const scene::MapVer
   }
   std::vector<report::PositionCovariance> covariances;
   if (keyframes.empty()) return covariances;
-  const verify::SystematicDrift bias = pipeline::systematic_drift(config.odometry);
   const core::KeyframeId first = keyframes.front()->id;
   const Eigen::Matrix3d world_from_first =
       scene::world_from_body(map, first).rotation.toRotationMatrix();
-  verify::DriftPaths paths(map);
+  verify::OdometryTree odometry = pipeline::odometry_tree(config);
+  verify::DriftPaths paths(map, odometry);
   const std::size_t step = (keyframes.size() - 1) / max_num + 1;
   for (std::size_t i = step; i < keyframes.size(); i += step) {
-    const auto in_first = paths.covariance(first, keyframes[i]->id, bias);
+    const auto in_first = paths.covariance(first, keyframes[i]->id);
     if (!in_first) continue;
     covariances.push_back(
         {keyframes[i]->view.frame,

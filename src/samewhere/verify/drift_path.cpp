@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/verify/drift_path.hpp>
 
@@ -25,15 +27,15 @@ void DriftPaths::collect_edges() {
   for (std::size_t i = 0; i < map_.keyframes.size(); ++i) {
     const scene::Keyframe& keyframe = map_.keyframes[i];
     if (keyframe.odometry)
-      add_edge(keyframe.odometry->parent, keyframe.id, false, keyframe.odometry->information);
+      add_edge(keyframe.odometry->parent, keyframe.id, false,
+               odometry_.edge_covariance(keyframe.id));
   }
   for (const scene::LoopEdge& loop : map_.loops)
-    add_edge(loop.match, loop.query, true, loop.information);
+    add_edge(loop.match, loop.query, true, loop.information.inverse());
 }
 
 void DriftPaths::add_edge(core::KeyframeId a, core::KeyframeId b, bool is_loop,
-                          const core::Matrix6d& information) {
-  const core::Matrix6d covariance = information.inverse();
+                          const core::Matrix6d& covariance) {
   const double cost = covariance.topLeftCorner<3, 3>().trace() +
                       kLever_m * kLever_m * covariance.bottomRightCorner<3, 3>().trace();
   edges_[a.index()].push_back({b.index(), is_loop, covariances_.size(), cost});
@@ -73,8 +75,7 @@ std::vector<DriftPaths::Step> DriftPaths::steps_between(core::KeyframeId begin,
   return steps;
 }
 
-std::optional<core::Matrix6d> DriftPaths::covariance(core::KeyframeId begin, core::KeyframeId end,
-                                                     const SystematicDrift& bias) {
+std::optional<core::Matrix6d> DriftPaths::covariance(core::KeyframeId begin, core::KeyframeId end) {
   if (begin == end) return core::Matrix6d::Zero();
   if (edges_.empty()) collect_edges();
   const std::vector<Step> steps = steps_between(begin, end);
@@ -89,12 +90,11 @@ std::optional<core::Matrix6d> DriftPaths::covariance(core::KeyframeId begin, cor
       std::ranges::count_if(parts, [](const auto& part) { return !part[0].edge->is_loop; }));
   UncertainPose begin_from_end;
   for (const std::vector<Step>& part : parts)
-    begin_from_end = compose(measured(part, bias, num_runs), begin_from_end);
+    begin_from_end = compose(measured(part, num_runs), begin_from_end);
   return begin_from_end.covariance;
 }
 
-geometry::UncertainPose DriftPaths::measured(const std::vector<Step>& part,
-                                             const SystematicDrift& bias, double num_runs) const {
+geometry::UncertainPose DriftPaths::measured(const std::vector<Step>& part, double num_runs) const {
   UncertainPose begin_from_end;
   for (const Step& step : part) {
     const core::Rigid3 before_from_here =
@@ -103,10 +103,9 @@ geometry::UncertainPose DriftPaths::measured(const std::vector<Step>& part,
                              begin_from_end);
   }
   if (part[0].edge->is_loop) return begin_from_end;
-  std::vector<core::KeyframeId> path = {part[0].here};
-  for (const Step& step : part) path.push_back(step.before);
   // the same errors in all runs: of their sum at most so many times the sum of the squares
-  begin_from_end.covariance += num_runs * systematic_covariance(map_, path, bias);
+  begin_from_end.covariance +=
+      num_runs * odometry_.systematic_covariance(part.back().before, part[0].here);
   return begin_from_end;
 }
 

@@ -7,25 +7,27 @@
 #include <samewhere/core/rigid3.hpp>
 #include <samewhere/geometry/uncertain_pose.hpp>
 #include <samewhere/scene/map_version.hpp>
-#include <samewhere/verify/systematic_drift.hpp>
+#include <samewhere/verify/odometry_tree.hpp>
 
 namespace samewhere::verify {
 
 // Odometry and loop edges of a map, with their covariances: what earlier loops have taken out of
-// the drift. Not copyable: refers to the map, which outlives it. Not for maps with scale drift.
+// the drift. Not copyable: refers to its arguments, which outlive it. Not for maps with scale
+// drift.
 class DriftPaths {
  public:
-  explicit DriftPaths(const scene::MapVersion& map) : map_(map) {}
+  // `odometry` follows the map from here on.
+  DriftPaths(const scene::MapVersion& map, OdometryTree& odometry)
+      : map_(map), odometry_(odometry) {
+    odometry_.follow(map);
+  }
   DriftPaths(const DriftPaths&) = delete;
   DriftPaths& operator=(const DriftPaths&) = delete;
 
-  const scene::MapVersion& map() const { return map_; }
-
   // Covariance of the pose of `end` in `begin`, [m; rad], along the path with the least drift. An
   // upper bound of the marginal covariance of the pose graph, since other paths add information.
-  // Nothing if no path joins the two. `bias`: of odometry from a file.
-  std::optional<core::Matrix6d> covariance(core::KeyframeId begin, core::KeyframeId end,
-                                           const SystematicDrift& bias);
+  // Nothing if no path joins the two.
+  std::optional<core::Matrix6d> covariance(core::KeyframeId begin, core::KeyframeId end);
 
  private:
   // As seen from one of its ends.
@@ -44,14 +46,14 @@ class DriftPaths {
 
   void collect_edges();
   void add_edge(core::KeyframeId a, core::KeyframeId b, bool is_loop,
-                const core::Matrix6d& information);
+                const core::Matrix6d& covariance);
   std::vector<Step> steps_between(core::KeyframeId begin, core::KeyframeId end) const;
   // The beginning of a part, a loop or odometry between loops, from its end. Of odometry in
   // `num_runs` parts the constant errors are the same.
-  geometry::UncertainPose measured(const std::vector<Step>& part, const SystematicDrift& bias,
-                                   double num_runs) const;
+  geometry::UncertainPose measured(const std::vector<Step>& part, double num_runs) const;
 
   const scene::MapVersion& map_;
+  OdometryTree& odometry_;
   std::vector<std::vector<Edge>> edges_;  // of each keyframe; collected when first needed
   std::vector<core::Matrix6d> covariances_;
 };

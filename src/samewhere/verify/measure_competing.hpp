@@ -4,8 +4,7 @@
 
 #include <samewhere/core/verdict.hpp>
 #include <samewhere/scene/map_version.hpp>
-#include <samewhere/verify/config.hpp>
-#include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/map_drift.hpp>
 
 namespace samewhere::verify {
 
@@ -16,18 +15,14 @@ namespace samewhere::verify {
 // is a second place for one view. Nothing without an earlier loop, nor where nothing connects the
 // match with it. Beyond max_competing_chi_square also the gain over the first of the loops that
 // contradict the claim (docs/decisions/016, 023).
-std::optional<core::CompetingLoopEvidence> measure_competing_loop(const scene::MapVersion& map,
-                                                                  const scene::LoopEdge& claim,
-                                                                  const ScaleErrors& scale,
-                                                                  const Config& config);
+std::optional<core::CompetingLoopEvidence> measure_competing_loop(MapDrift& drift,
+                                                                  const scene::LoopEdge& claim);
 
 // Competing hypothesis of the same query: two claims whose matches odometry keeps apart
 // (max_competing_chi_square), and the distance between the query's poses by both. Nothing if they
 // can show one place, or if nothing connects them (docs/decisions/028).
-std::optional<core::CompetingPlaceEvidence> measure_competing_place(const scene::MapVersion& map,
+std::optional<core::CompetingPlaceEvidence> measure_competing_place(MapDrift& drift,
                                                                     const scene::LoopEdge& claim,
-                                                                    const scene::LoopEdge& other,
-                                                                    const ScaleErrors& scale,
-                                                                    const Config& config);
+                                                                    const scene::LoopEdge& other);
 
 }  // namespace samewhere::verify

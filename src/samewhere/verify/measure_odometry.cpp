@@ -4,10 +4,9 @@
 
 #include <Eigen/Cholesky>
 
-#include <samewhere/verify/drift_path.hpp>
+#include <samewhere/verify/expected_end.hpp>
 #include <samewhere/verify/look_alike.hpp>
 #include <samewhere/verify/measure_odometry.hpp>
-#include <samewhere/verify/odometry_chain.hpp>
 #include <samewhere/verify/variance_factor.hpp>
 
 namespace samewhere::verify {
@@ -21,30 +20,30 @@ core::Vector6d correction_by(const scene::MapVersion& map, const scene::LoopEdge
 }
 
 // The query's pose in the match by odometry alone. Nothing if that does not join the two.
-std::optional<geometry::UncertainPose> drift_alone(const scene::MapVersion& map,
-                                                   const scene::LoopEdge& claim,
-                                                   const ScaleErrors& scale) {
-  const auto chain = odometry_between(map, claim.match, claim.query);
-  if (!chain) return std::nullopt;
-  return expected_end(map, *chain, claim.log_scale, scale);
+std::optional<geometry::UncertainPose> by_odometry_alone(MapDrift& drift,
+                                                         const scene::LoopEdge& claim) {
+  return expected_end(drift, claim.match, claim.query, claim.log_scale, drift.scale());
 }
 
-void learn_from_loops(const scene::MapVersion& map, const Config& config,
-                      core::Matrix6d& covariance) {
-  if (has_scale_drift(map)) return;
-  covariance *= variance_factor(map, least_certain_sigma_m(covariance), config);
+// Scales the covariance of odometry by what loops have taught of it, and returns by how much.
+std::optional<double> learn_from_loops(const scene::MapVersion& map, const Config& config,
+                                       core::Matrix6d& covariance) {
+  if (has_scale_drift(map)) return std::nullopt;
+  const double factor = variance_factor(map, least_certain_sigma_m(covariance), config);
+  covariance *= factor;
+  return factor < 1.0 ? std::optional(factor) : std::nullopt;
 }
 
 core::OdometryEvidence measured_alone(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                                      const std::optional<geometry::UncertainPose>& drift,
+                                      const std::optional<geometry::UncertainPose>& known,
                                       const Config& config) {
   const core::Vector6d correction = correction_by(map, claim);
   core::OdometryEvidence evidence;
   evidence.correction_m = correction.head<3>().norm();
   evidence.correction_rad = correction.tail<3>().norm();
-  if (!drift) return evidence;
-  const core::Vector6d error = difference(drift->a_from_b, claim.match_from_query);
-  const core::Matrix6d covariance = drift->covariance + loop_information(config).inverse();
+  if (!known) return evidence;
+  const core::Vector6d error = difference(known->a_from_b, claim.match_from_query);
+  const core::Matrix6d covariance = known->covariance + loop_information(config).inverse();
   evidence.mahalanobis_squared = error.dot(covariance.llt().solve(error));
   evidence.sigma_m = least_certain_sigma_m(covariance);
   evidence.look_alike_gain =
@@ -54,28 +53,22 @@ core::OdometryEvidence measured_alone(const scene::MapVersion& map, const scene:
 
 }  // namespace
 
-core::OdometryEvidence measure_odometry_alone(const scene::MapVersion& map,
-                                              const scene::LoopEdge& claim,
-                                              const ScaleErrors& scale, const Config& config) {
-  return measured_alone(map, claim, drift_alone(map, claim, scale), config);
+core::OdometryEvidence measure_odometry_alone(MapDrift& drift, const scene::LoopEdge& claim) {
+  return measured_alone(drift.map(), claim, by_odometry_alone(drift, claim), drift.config());
 }
 
-core::OdometryEvidence measure_odometry(const scene::MapVersion& map, const scene::LoopEdge& claim,
-                                        const ScaleErrors& scale, const Config& config) {
-  DriftPaths paths(map);
-  return measure_odometry(paths, claim, scale, config);
-}
-
-core::OdometryEvidence measure_odometry(DriftPaths& paths, const scene::LoopEdge& claim,
-                                        const ScaleErrors& scale, const Config& config) {
-  const scene::MapVersion& map = paths.map();
-  auto drift = drift_alone(map, claim, scale);
-  if (drift) learn_from_loops(map, config, drift->covariance);
-  core::OdometryEvidence evidence = measured_alone(map, claim, drift, config);
+core::OdometryEvidence measure_odometry(MapDrift& drift, const scene::LoopEdge& claim) {
+  const scene::MapVersion& map = drift.map();
+  const Config& config = drift.config();
+  auto known = by_odometry_alone(drift, claim);
+  std::optional<double> factor;
+  if (known) factor = learn_from_loops(map, config, known->covariance);
+  core::OdometryEvidence evidence = measured_alone(map, claim, known, config);
+  evidence.variance_factor = factor;
   if (evidence.mahalanobis_squared > config.max_odometry_chi_square || map.loops.empty() ||
       has_scale_drift(map))
     return evidence;
-  auto with_loops = paths.covariance(claim.match, claim.query, scale.bias);
+  auto with_loops = drift.paths().covariance(claim.match, claim.query);
   if (!with_loops) return evidence;
   learn_from_loops(map, config, *with_loops);
   const core::Vector6d correction = correction_by(map, claim);
@@ -88,17 +81,15 @@ core::OdometryEvidence measure_odometry(DriftPaths& paths, const scene::LoopEdge
   return evidence;
 }
 
-std::optional<scene::DriftSample> measure_drift(const scene::MapVersion& map,
-                                                const scene::LoopEdge& claim,
-                                                const ScaleErrors& scale, const Config& config) {
+std::optional<scene::DriftSample> measure_drift(MapDrift& drift, const scene::LoopEdge& claim) {
+  const scene::MapVersion& map = drift.map();
   if (has_scale_drift(map)) return std::nullopt;
-  const auto drift = drift_alone(map, claim, scale);
-  if (!drift) return std::nullopt;
+  const auto known = by_odometry_alone(drift, claim);
+  if (!known) return std::nullopt;
   std::optional<core::Matrix6d> with_loops;
-  if (!map.loops.empty())
-    with_loops = DriftPaths(map).covariance(claim.match, claim.query, scale.bias);
-  return drift_sample(difference(drift->a_from_b, claim.match_from_query), drift->covariance,
-                      with_loops, config);
+  if (!map.loops.empty()) with_loops = drift.paths().covariance(claim.match, claim.query);
+  return drift_sample(difference(known->a_from_b, claim.match_from_query), known->covariance,
+                      with_loops, drift.config());
 }
 
 double least_look_alike_distance(const scene::MapVersion& map, const Config& config) {

@@ -6,44 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <samewhere/features/test_world.hpp>
-#include <samewhere/verify/measure_competing.hpp>
-#include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/test_corridor.hpp>
 
 namespace samewhere::verify {
 namespace {
 
-// A straight corridor of keyframes one metre apart.
-scene::MapVersion corridor(int count, const features::View& view = features::View{}) {
-  scene::Edit edit;
-  const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0, 0, 1}};
-  core::Rigid3 pose;
-  for (int i = 0; i < count; ++i) {
-    scene::Keyframe keyframe;
-    keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
-    keyframe.world_from_body = pose;
-    keyframe.view = view;
-    if (view.features) keyframe.slots.resize(static_cast<std::size_t>(view.features->size()));
-    if (i > 0) {
-      keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), step,
-                           400.0 * core::Matrix6d::Identity()};
-    }
-    edit.keyframes.push_back(keyframe);
-    pose = pose * step;
-  }
-  return apply(scene::MapVersion{}, edit);
-}
-
-scene::LoopEdge claim(int query, int match, const core::Rigid3& match_from_query) {
-  scene::LoopEdge loop;
-  loop.query = core::KeyframeId(static_cast<std::uint64_t>(query));
-  loop.match = core::KeyframeId(static_cast<std::uint64_t>(match));
-  loop.match_from_query = match_from_query;
-  return loop;
-}
-
 TEST(MeasureOdometry, ALoopThatAgreesWithOdometryHasNoCorrection) {
-  const auto evidence = measure_odometry(
-      corridor(10), claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}), {}, {});
+  const auto evidence =
+      TestDrift(corridor(10)).odometry(claim(9, 0, {Eigen::Quaterniond::Identity(), {0, 0, 9}}));
   EXPECT_NEAR(evidence.correction_m, 0.0, 1e-9);
   EXPECT_NEAR(evidence.mahalanobis_squared, 0.0, 1e-9);
 }
@@ -53,7 +23,7 @@ TEST(MeasureOdometry, TheSameCorrectionCountsMoreAfterAShortChain) {
   const auto after = [&](int steps) {
     core::Rigid3 match_from_query = beside;
     match_from_query.translation.z() = steps - 1.0;  // one metre short of what odometry says
-    return measure_odometry(corridor(steps + 1), claim(steps, 0, match_from_query), {}, {});
+    return TestDrift(corridor(steps + 1)).odometry(claim(steps, 0, match_from_query));
   };
   EXPECT_NEAR(after(5).correction_m, 1.0, 1e-9);
   EXPECT_GT(after(5).mahalanobis_squared, Config{}.max_odometry_chi_square);
@@ -65,7 +35,8 @@ TEST(MeasureOdometry, WithoutDepthTheGateIsWiderAlongTheChainOnly) {
       features::test_view(features::test_world(1, 20), 0, {}, 0.0, false);
   const auto squared = [&](const features::View& view, const Eigen::Vector3d& error) {
     const core::Rigid3 seen{Eigen::Quaterniond::Identity(), error + Eigen::Vector3d(0, 0, 20)};
-    return measure_odometry(corridor(21, view), claim(20, 0, seen), {.creep = 0.02}, {})
+    return TestDrift(corridor(21, view), {}, {.creep = 0.02})
+        .odometry(claim(20, 0, seen))
         .mahalanobis_squared;
   };
   const Eigen::Vector3d along(0.0, 0.0, 2.0);
@@ -106,7 +77,7 @@ TEST(MeasureOdometry, WithoutDepthTheScaleDriftOfTheLoopIsTakenOut) {
   const auto squared = [&](const Eigen::Vector3d& error, double log_scale) {
     scene::LoopEdge loop = claim(40, 0, {Eigen::Quaterniond::Identity(), error});
     loop.log_scale = log_scale;
-    return measure_odometry(map, loop, {}, {}).mahalanobis_squared;
+    return TestDrift(map).odometry(loop).mahalanobis_squared;
   };
   const double limit = Config{}.max_odometry_chi_square;
   const Eigen::Vector3d aside(2.0, 0.0, 0.0);
@@ -121,7 +92,7 @@ TEST(MeasureOdometry, WithoutACommonOriginTheGateIsOpen) {
   edit.keyframes.resize(1);
   edit.keyframes[0].id = core::KeyframeId(3);
   map = apply(map, edit);
-  const auto evidence = measure_odometry(map, claim(3, 0, {}), {}, {});
+  const auto evidence = TestDrift(map).odometry(claim(3, 0, {}));
   EXPECT_EQ(evidence.mahalanobis_squared, 0.0);
 }
 
@@ -144,9 +115,8 @@ scene::LoopEdge sideways(const scene::MapVersion& map, int query, double metres)
 
 TEST(MeasureOdometry, TellsAPlaceFromALookAlikeAfterAShortChainOnly) {
   const auto after = [&](int steps) {
-    return measure_odometry(corridor(steps + 1),
-                            claim(steps, 0, {Eigen::Quaterniond::Identity(), {0, 0, 1.0 * steps}}),
-                            {}, {});
+    return TestDrift(corridor(steps + 1))
+        .odometry(claim(steps, 0, {Eigen::Quaterniond::Identity(), {0, 0, 1.0 * steps}}));
   };
   ASSERT_TRUE(after(3).look_alike_gain && after(60).look_alike_gain);
   EXPECT_GT(*after(3).look_alike_gain, Config{}.min_look_alike_gain);
@@ -160,12 +130,11 @@ TEST(MeasureOdometry, EarlierLoopsTakeDriftOutOfTheGate) {
   const auto agreed = [](int query, int match) {
     return claim(query, match, {Eigen::Quaterniond::Identity(), {0, 0, 1.0 * (query - match)}});
   };
-  const auto before = measure_odometry(map, agreed(31, 1), {}, {});
+  const auto before = TestDrift(map).odometry(agreed(31, 1));
   scene::Edit edit;
   edit.loops.push_back(agreed(31, 1));
-  edit.loops.back().information = loop_information({});
   map = apply(map, edit);
-  const auto after = measure_odometry(map, agreed(31, 1), {}, {});
+  const auto after = TestDrift(map).odometry(agreed(31, 1));
   ASSERT_TRUE(after.look_alike_gain_with_loops && after.mahalanobis_squared_with_loops);
   EXPECT_EQ(after.look_alike_gain, before.look_alike_gain) << "odometry alone knows no loop";
   EXPECT_LT(*before.look_alike_gain, Config{}.min_look_alike_gain);
@@ -173,7 +142,7 @@ TEST(MeasureOdometry, EarlierLoopsTakeDriftOutOfTheGate) {
   EXPECT_NEAR(*after.mahalanobis_squared_with_loops, 0.0, 1e-9);
   EXPECT_LT(*after.sigma_m, 0.5 * *before.sigma_m);
   // what lies between both ends of the loop was not measured again
-  const auto halfway = measure_odometry(map, agreed(31, 16), {}, {});
+  const auto halfway = TestDrift(map).odometry(agreed(31, 16));
   EXPECT_LT(*halfway.look_alike_gain_with_loops, *after.look_alike_gain_with_loops);
 }
 
@@ -183,19 +152,19 @@ TEST(MeasureOdometry, LoopsJoinWhatOdometryDoesNot) {
   edit.keyframes.resize(1);
   edit.keyframes[0].id = core::KeyframeId(3);
   map = apply(map, edit);
-  EXPECT_FALSE(measure_odometry(map, claim(3, 0, {}), {}, {}).look_alike_gain);
+  EXPECT_FALSE(TestDrift(map).odometry(claim(3, 0, {})).look_alike_gain);
   scene::Edit joined;
   joined.loops.push_back(claim(3, 1, {Eigen::Quaterniond::Identity(), {0, 0, -1}}));
   joined.loops.back().information = loop_information({});
   map = apply(map, joined);
-  EXPECT_TRUE(measure_odometry(map, claim(3, 0, {}), {}, {}).look_alike_gain_with_loops);
+  EXPECT_TRUE(TestDrift(map).odometry(claim(3, 0, {})).look_alike_gain_with_loops);
 }
 
 TEST(MeasureCompetingPlace, TwoClaimsShowTwoPlacesIfOdometryKeepsTheirMatchesApart) {
   const scene::MapVersion map = corridor(40);
   const core::Rigid3 here;
   const auto places = [&](const scene::LoopEdge& one, const scene::LoopEdge& other) {
-    return measure_competing_place(map, one, other, {}, {});
+    return TestDrift(map).competing_place(one, other);
   };
   const auto apart = places(claim(39, 2, here), claim(39, 8, here));
   ASSERT_TRUE(apart) << "it cannot be at both ends of six metres";
@@ -208,14 +177,14 @@ TEST(MeasureCompetingPlace, TwoClaimsShowTwoPlacesIfOdometryKeepsTheirMatchesApa
 
 TEST(MeasureCompetingLoop, TheFirstLoopHasNone) {
   const scene::MapVersion map = corridor_with_loop();
-  EXPECT_FALSE(measure_competing_loop(map, sideways(map, 19, 1.8), {}, {}));
-  EXPECT_TRUE(measure_competing_loop(map, sideways(map, 20, 1.8), {}, {}));
+  EXPECT_FALSE(TestDrift(map).competing_loop(sideways(map, 19, 1.8)));
+  EXPECT_TRUE(TestDrift(map).competing_loop(sideways(map, 20, 1.8)));
 }
 
 TEST(MeasureCompetingLoop, ItsChiSquareShrinksWithTheDriftSinceTheLastLoop) {
   const scene::MapVersion map = corridor_with_loop();
   const auto after = [&](int keyframes, double metres) {
-    return *measure_competing_loop(map, sideways(map, 20 + keyframes, metres), {}, {});
+    return *TestDrift(map).competing_loop(sideways(map, 20 + keyframes, metres));
   };
   EXPECT_NEAR(after(2, 1.8).apart_m, 1.8, 1e-9);
   EXPECT_NEAR(after(2, 1.8).apart_rad, 0.0, 1e-9);
@@ -240,23 +209,23 @@ scene::MapVersion corridor_moved_by(const std::vector<int>& queries, double metr
 
 TEST(MeasureCompetingLoop, TheGainFavoursTheClaimThatAgreesWithOdometry) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 4.0);
-  const auto back = measure_competing_loop(map, sideways(map, 24, -4.0), {}, {});
+  const auto back = TestDrift(map).competing_loop(sideways(map, 24, -4.0));
   ASSERT_TRUE(back && back->gain);
   EXPECT_EQ(back->first_loop, core::CandidateId(20)) << "the second agrees with the first";
   EXPECT_GT(*back->gain, 9.0);
-  const auto further = measure_competing_loop(map, sideways(map, 24, 4.0), {}, {});
+  const auto further = TestDrift(map).competing_loop(sideways(map, 24, 4.0));
   ASSERT_TRUE(further && further->gain);
   EXPECT_LT(*further->gain, -9.0);
 }
 
 TEST(MeasureCompetingLoop, AnEarlierLoopThatAgreesWithTheClaimIsTheBaseOfTheGain) {
   scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  const auto without = measure_competing_loop(map, sideways(map, 24, -1.8), {}, {});
+  const auto without = TestDrift(map).competing_loop(sideways(map, 24, -1.8));
   ASSERT_TRUE(without && without->gain);
   scene::Edit edit;
   edit.loops.push_back(claim(18, 2, {Eigen::Quaterniond::Identity(), {0, 0, 16}}));
   map = apply(map, edit);
-  const auto with = measure_competing_loop(map, sideways(map, 24, -1.8), {}, {});
+  const auto with = TestDrift(map).competing_loop(sideways(map, 24, -1.8));
   ASSERT_TRUE(with && with->gain);
   EXPECT_EQ(with->first_loop, core::CandidateId(20));
   EXPECT_GT(*with->gain, 3.0 * std::abs(*without->gain))
@@ -267,7 +236,7 @@ TEST(MeasureCompetingLoop, AnEarlierLoopThatAgreesWithTheClaimIsTheBaseOfTheGain
 TEST(MeasureCompetingLoop, ALoopThatFitsTheContradictingOnesBetterIsNoBase) {
   const scene::MapVersion map =
       corridor_moved_by({20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70}, 4.0);
-  const auto competing = measure_competing_loop(map, sideways(map, 72, -4.0), {}, {});
+  const auto competing = TestDrift(map).competing_loop(sideways(map, 72, -4.0));
   ASSERT_TRUE(competing && competing->gain);
   EXPECT_EQ(competing->first_loop, core::CandidateId(20));
 }
@@ -278,16 +247,16 @@ TEST(MeasureCompetingLoop, AShortChainIsNoEvidenceByItself) {
   scene::Edit edit;
   edit.loops.push_back(claim(60, 3, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 57.0}}));
   map = apply(map, edit);
-  const auto competing = measure_competing_loop(
-      map, claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}), {}, {});
+  const auto competing = TestDrift(map).competing_loop(
+      claim(64, 55, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 9.6}}));
   ASSERT_TRUE(competing && competing->gain);
   EXPECT_LT(*competing->gain, -10.0);
 }
 
 TEST(MeasureCompetingLoop, WithTheLastLoopOrBeyondTheGateThereIsNoGain) {
   const scene::MapVersion map = corridor_moved_by({20, 22}, 1.8);
-  EXPECT_FALSE(measure_competing_loop(map, sideways(map, 24, 0.1), {}, {})->gain);
-  const auto beyond = measure_competing_loop(map, sideways(map, 24, 8.0), {}, {});
+  EXPECT_FALSE(TestDrift(map).competing_loop(sideways(map, 24, 0.1))->gain);
+  const auto beyond = TestDrift(map).competing_loop(sideways(map, 24, 8.0));
   EXPECT_GT(beyond->mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_FALSE(beyond->gain);
 }
@@ -298,7 +267,7 @@ TEST(MeasureCompetingLoop, WithoutDepthThereIsNoGain) {
   scene::Edit edit;
   edit.loops.push_back(sideways(map, 20, 0.0));
   map = apply(map, edit);
-  const auto competing = measure_competing_loop(map, sideways(map, 22, 1.8), {}, {});
+  const auto competing = TestDrift(map).competing_loop(sideways(map, 22, 1.8));
   ASSERT_TRUE(competing);
   EXPECT_GT(competing->mahalanobis_squared, Config{}.max_competing_chi_square);
   EXPECT_FALSE(competing->gain);

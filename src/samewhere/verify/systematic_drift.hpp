@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include <samewhere/core/rigid3.hpp>
 #include <samewhere/scene/map_version.hpp>
 
@@ -21,36 +19,16 @@ struct SystematicDrift {
   }
 };
 
-// Covariance [m; rad] that they add to the pose of the end of a chain of odometry edges in its
-// beginning, for a chain that is made longer at its beginning. The heading is about the axis of the
-// largest rotation variance of an edge, if there is one. To first order, and for the position to
-// second order in the heading.
-class DriftSum {
- public:
-  // An error of 1 of distances, of turns, of the heading by distance and by time, and of rotation
-  // about each axis of the body by distance and by time.
-  static constexpr int kErrors = 10;
-  using Effects = Eigen::Matrix<double, 3, kErrors>;  // of each, on the end
+// Of distances, of turns, of the heading by distance and by time, and of rotation about each axis
+// of the body by distance and by time: twists [m; rad], one column for an error of one standard
+// deviation.
+using ConstantErrors = Eigen::Matrix<double, 6, 10>;
 
-  explicit DriftSum(const SystematicDrift& drift) : drift_(drift) {}
-
-  // By the edge from `before` to `here`, the beginning so far. One is the odometry parent of the
-  // other.
-  void lengthen(const scene::MapVersion& map, core::KeyframeId here, core::KeyframeId before);
-  core::Matrix6d covariance() const;
-
- private:
-  SystematicDrift drift_;
-  core::Rigid3 end_from_begin_;
-  Effects shift_ = Effects::Zero();  // of the position, in the end
-  Effects turn_ = Effects::Zero();   // of the rotation, in the end
-  double reach_m_ = 0.0;             // of the chain from the end
-};
-
-// The same of a whole chain. `path`: from the end back to the beginning, each keyframe the odometry
-// parent or the child of the next.
-core::Matrix6d systematic_covariance(const scene::MapVersion& map,
-                                     const std::vector<core::KeyframeId>& path,
-                                     const SystematicDrift& drift);
+// How an odometry edge moves all that comes after it, about the origin of the frame in which both
+// poses are. The heading is about the axis of the largest rotation variance of the edge, if there
+// is one. `covariance`: of the edge.
+ConstantErrors constant_errors(const core::Rigid3& parent, const core::Rigid3& child,
+                               const core::Matrix6d& covariance, double duration_s,
+                               const SystematicDrift& drift);
 
 }  // namespace samewhere::verify

@@ -1,45 +1,18 @@
 #include <gtest/gtest.h>
 
-#include <samewhere/verify/measure_odometry.hpp>
+#include <samewhere/verify/test_corridor.hpp>
 #include <samewhere/verify/variance_factor.hpp>
 
 namespace samewhere::verify {
 namespace {
 
-// Keyframes one metre apart in a line, 5 cm and 0.05 rad of drift each.
-scene::MapVersion line_of_keyframes(int count) {
-  scene::Edit edit;
-  const core::Rigid3 step{Eigen::Quaterniond::Identity(), {0, 0, 1}};
-  core::Rigid3 pose;
-  for (int i = 0; i < count; ++i) {
-    scene::Keyframe keyframe;
-    keyframe.id = core::KeyframeId(static_cast<std::uint64_t>(i));
-    keyframe.world_from_body = pose;
-    if (i > 0)
-      keyframe.odometry = {core::KeyframeId(static_cast<std::uint64_t>(i - 1)), step,
-                           400.0 * core::Matrix6d::Identity()};
-    edit.keyframes.push_back(keyframe);
-    pose = pose * step;
-  }
-  return apply(scene::MapVersion{}, edit);
-}
-
-scene::LoopEdge loop_between(int query, int match, double error_m) {
-  scene::LoopEdge loop;
-  loop.query = core::KeyframeId(static_cast<std::uint64_t>(query));
-  loop.match = core::KeyframeId(static_cast<std::uint64_t>(match));
-  loop.match_from_query.translation = {error_m, 0, 1.0 * (query - match)};
-  loop.information = loop_information({});
-  return loop;
-}
-
 scene::MapVersion with_samples(const std::vector<scene::DriftSample>& samples) {
   scene::Edit edit;
   for (const scene::DriftSample& sample : samples) {
-    edit.loops.push_back(loop_between(10, 1, 0.0));
+    edit.loops.push_back(loop_beside(10, 1, 0.0));
     edit.loops.back().drift_sample = sample;
   }
-  return apply(line_of_keyframes(40), edit);
+  return apply(corridor(40), edit);
 }
 
 TEST(VarianceFactor, IsOneUntilLoopsHaveShownOtherwise) {
@@ -63,39 +36,41 @@ TEST(VarianceFactor, ALittleDriftDoesNotTellOfALargeOne) {
 }
 
 TEST(MeasureDrift, IsTheErrorOfOdometryUnderItsCovariance) {
-  const scene::MapVersion map = line_of_keyframes(40);
-  const auto exact = measure_drift(map, loop_between(31, 1, 0.0), {}, {});
-  const auto off = measure_drift(map, loop_between(31, 1, 1.0), {}, {});
+  const scene::MapVersion map = corridor(40);
+  const auto exact = TestDrift(map).sample(loop_beside(31, 1, 0.0));
+  const auto off = TestDrift(map).sample(loop_beside(31, 1, 1.0));
   ASSERT_TRUE(exact && off);
   EXPECT_NEAR(exact->chi_square, 0.0, 1e-9);
   EXPECT_GT(off->chi_square, 0.1);
   EXPECT_EQ(off->sigma_m, exact->sigma_m);
-  EXPECT_FALSE(measure_drift(map, loop_between(2, 1, 0.0), {}, {})) << "as sure as the loop itself";
+  EXPECT_FALSE(TestDrift(map).sample(loop_beside(2, 1, 0.0))) << "as sure as the loop itself";
 }
 
 TEST(MeasureDrift, OfOneRevisitCountsTheFirstLoopAlone) {
-  scene::MapVersion map = line_of_keyframes(40);
+  scene::MapVersion map = corridor(40);
   scene::Edit edit;
-  edit.loops.push_back(loop_between(31, 1, 0.0));
+  edit.loops.push_back(loop_beside(31, 1, 0.0));
   map = apply(map, edit);
-  EXPECT_FALSE(measure_drift(map, loop_between(32, 2, 0.0), {}, {}));
-  EXPECT_TRUE(measure_drift(map, loop_between(31, 16, 0.0), {}, {})) << "half of it on its own";
+  EXPECT_FALSE(TestDrift(map).sample(loop_beside(32, 2, 0.0)));
+  EXPECT_TRUE(TestDrift(map).sample(loop_beside(31, 16, 0.0))) << "half of it on its own";
 }
 
 TEST(VarianceFactor, MakesTheGateNarrowerAndTellsMoreFromALookAlike) {
-  const scene::MapVersion map = line_of_keyframes(40);
-  const scene::LoopEdge claim = loop_between(35, 5, 1.0);
-  const auto before = measure_odometry(map, claim, {}, {});
+  const scene::MapVersion map = corridor(40);
+  const scene::LoopEdge claim = loop_beside(35, 5, 1.0);
+  const auto before = TestDrift(map).odometry(claim);
   scene::Edit edit;
-  edit.loops.push_back(loop_between(31, 1, 0.0));
-  edit.loops.back().drift_sample = measure_drift(map, edit.loops.back(), {}, {});
+  edit.loops.push_back(loop_beside(31, 1, 0.0));
+  edit.loops.back().drift_sample = TestDrift(map).sample(edit.loops.back());
   const scene::MapVersion with_loop = apply(map, edit);
-  const auto after = measure_odometry(with_loop, claim, {}, {});
+  const auto after = TestDrift(with_loop).odometry(claim);
   EXPECT_NEAR(after.mahalanobis_squared, before.mahalanobis_squared * 18.0 / 12.0,
               0.01 * before.mahalanobis_squared);
   EXPECT_GT(*after.look_alike_gain, 1.4 * *before.look_alike_gain);
   EXPECT_LT(*after.sigma_m, *before.sigma_m);
-  const auto unlearned = measure_odometry(with_loop, claim, {}, {.min_variance_factor = 1.0});
+  EXPECT_FALSE(before.variance_factor);
+  EXPECT_NEAR(after.variance_factor.value_or(1.0), 12.0 / 18.0, 0.01);
+  const auto unlearned = TestDrift(with_loop, {.min_variance_factor = 1.0}).odometry(claim);
   EXPECT_EQ(unlearned.mahalanobis_squared, before.mahalanobis_squared);
 }
 

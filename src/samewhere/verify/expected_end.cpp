@@ -2,16 +2,12 @@
 #include <cmath>
 #include <vector>
 
-#include <samewhere/verify/odometry_chain.hpp>
+#include <samewhere/verify/expected_end.hpp>
 
 namespace samewhere::verify {
 namespace {
 
 using geometry::UncertainPose;
-
-UncertainPose edge_of(const scene::Keyframe& keyframe) {
-  return {keyframe.odometry->parent_from_keyframe, keyframe.odometry->information.inverse()};
-}
 
 // Of a path, from its beginning on, in the frame of the beginning: each step as long as the crept
 // scale makes it.
@@ -31,27 +27,29 @@ bool is_settled(const scene::MapVersion& map, core::KeyframeId from, core::Keyfr
 }
 
 // Of each step from the beginning on: whether the scale crept on it.
-std::vector<bool> crept_steps(const scene::MapVersion& map, const OdometryChain& chain) {
+std::vector<bool> crept_steps(const scene::MapVersion& map,
+                              const std::vector<core::KeyframeId>& path) {
   std::vector<bool> is_crept;
-  for (std::size_t i = chain.path.size() - 1; i > 0; --i)
-    is_crept.push_back(!is_settled(map, chain.path[i], chain.path[i - 1]));
+  for (std::size_t i = path.size() - 1; i > 0; --i)
+    is_crept.push_back(!is_settled(map, path[i], path[i - 1]));
   return is_crept;
 }
 
-StretchedPath stretched(const scene::MapVersion& map, const OdometryChain& chain,
-                        double log_scale) {
-  StretchedPath path{.steps = {}, .is_crept = crept_steps(map, chain)};
+// `keyframes`: from the end back to the beginning.
+StretchedPath stretched(const scene::MapVersion& map,
+                        const std::vector<core::KeyframeId>& keyframes, double log_scale) {
+  StretchedPath path{.steps = {}, .is_crept = crept_steps(map, keyframes)};
   const auto num_crept = std::count(path.is_crept.begin(), path.is_crept.end(), true);
   const double rate = num_crept > 0 ? log_scale / static_cast<double>(num_crept) : 0.0;
   const Eigen::Quaterniond begin_from_world =
-      world_from_body(map, chain.begin).rotation.conjugate();
+      world_from_body(map, keyframes.back()).rotation.conjugate();
   double crept = 0.0;
   double before = 0.0;
   double after = 0.0;
-  for (std::size_t i = chain.path.size() - 1; i > 0; --i) {
+  for (std::size_t i = keyframes.size() - 1; i > 0; --i) {
     const Eigen::Vector3d step =
-        begin_from_world * (world_from_body(map, chain.path[i - 1]).translation -
-                            world_from_body(map, chain.path[i]).translation);
+        begin_from_world * (world_from_body(map, keyframes[i - 1]).translation -
+                            world_from_body(map, keyframes[i]).translation);
     const double on_step = path.is_crept[path.steps.size()] ? rate : 0.0;
     path.steps.emplace_back(std::exp(crept + 0.5 * on_step) * step);
     crept += on_step;
@@ -86,39 +84,16 @@ Eigen::Matrix3d covariance_of_creep(const StretchedPath& path, const ScaleErrors
 
 }  // namespace
 
-bool ClimbingChain::climb(const scene::MapVersion& map) {
-  const scene::Keyframe& keyframe = map.at(chain_.begin);
-  if (!keyframe.odometry) return false;
-  chain_.begin_from_end = compose(edge_of(keyframe), chain_.begin_from_end);
-  chain_.begin = keyframe.odometry->parent;
-  chain_.path.push_back(chain_.begin);
-  return true;
-}
-
-std::optional<OdometryChain> odometry_between(const scene::MapVersion& map, core::KeyframeId begin,
-                                              core::KeyframeId end) {
-  ClimbingChain to_begin(begin);
-  ClimbingChain to_end(end);
-  while (to_begin.begin() != to_end.begin()) {
-    ClimbingChain& younger = to_end.begin() > to_begin.begin() ? to_end : to_begin;
-    if (!younger.climb(map)) return std::nullopt;
-  }
-  OdometryChain chain = to_end.chain();
-  chain.begin = begin;
-  chain.begin_from_end =
-      compose(inverse(to_begin.chain().begin_from_end), to_end.chain().begin_from_end);
-  const auto& down = to_begin.chain().path;  // ends where the other ends
-  chain.path.insert(chain.path.end(), down.rbegin() + 1, down.rend());
-  return chain;
-}
-
-UncertainPose expected_end(const scene::MapVersion& map, const OdometryChain& chain,
-                           double log_scale, const ScaleErrors& scale) {
-  UncertainPose expected{
-      inverse(world_from_body(map, chain.begin)) * world_from_body(map, chain.end),
-      chain.begin_from_end.covariance + systematic_covariance(map, chain.path, scale.bias)};
+std::optional<UncertainPose> expected_end(MapDrift& drift, core::KeyframeId begin,
+                                          core::KeyframeId end, double log_scale,
+                                          const ScaleErrors& scale) {
+  const auto by_odometry = drift.odometry().between(begin, end);
+  if (!by_odometry) return std::nullopt;
+  const scene::MapVersion& map = drift.map();
+  UncertainPose expected{inverse(world_from_body(map, begin)) * world_from_body(map, end),
+                         by_odometry->covariance};
   if (!has_scale_drift(map)) return expected;
-  const StretchedPath path = stretched(map, chain, log_scale);
+  const StretchedPath path = stretched(map, drift.odometry().path(begin, end), log_scale);
   expected.a_from_b.translation.setZero();
   for (const Eigen::Vector3d& step : path.steps) expected.a_from_b.translation += step;
   core::Vector6d lengths = core::Vector6d::Ones();
