@@ -117,20 +117,24 @@ bool overrules(const core::CompetingLoopEvidence& loop, const Config& config) {
          *loop.gain >= config.min_competing_gain;
 }
 
-// An earlier loop has put the query at another place.
+// An earlier loop has put the query at another place. Odometry decides for that loop, or nothing
+// does.
 std::optional<core::Verdict> check_competing_loop(const Candidate& candidate,
                                                   const Evidence& evidence, const Config& config) {
   if (!evidence.competing_loop) return std::nullopt;
   const core::CompetingLoopEvidence& loop = *evidence.competing_loop;
   if (loop.mahalanobis_squared <= config.max_competing_chi_square || overrules(loop, config))
     return std::nullopt;
-  return core::Ambiguous{
-      candidate.id, evidence, Refusal::kCompeting,
-      fmt::format(
-          "the last loop places the camera at frame {}, {:.2f} m and {:.1f} degrees from here, "
-          "more than odometry can have drifted since (chi-square {:.0f}, at most {:.0f})",
-          loop.frame.index(), loop.apart_m, loop.apart_rad * kDegrees, loop.mahalanobis_squared,
-          config.max_competing_chi_square)};
+  const std::string reason = fmt::format(
+      "the last loop places the camera at frame {}, {:.2f} m and {:.1f} degrees from here, "
+      "more than odometry can have drifted since (chi-square {:.0f}, at most {:.0f})",
+      loop.frame.index(), loop.apart_m, loop.apart_rad * kDegrees, loop.mahalanobis_squared,
+      config.max_competing_chi_square);
+  if (!loop.gain || *loop.gain > -config.min_competing_gain)
+    return core::Ambiguous{candidate.id, evidence, Refusal::kCompeting, reason};
+  return rejection(
+      candidate, evidence, Refusal::kCompeting,
+      fmt::format("{}; odometry fits that place better (gain {:.0f})", reason, *loop.gain));
 }
 
 // All loops of the map together put the query at another place.

@@ -263,6 +263,25 @@ TEST(Decide, ALoopOverrulesThoseThatContradictItWithEnoughGain) {
   EXPECT_FALSE(std::get<core::LoopClosure>(agreeing).overruled.is_valid()) << "nothing contradicts";
 }
 
+TEST(Decide, OdometryRejectsWhatContradictsALoopThatFitsItBetter) {
+  core::Evidence evidence = good_evidence();
+  evidence.competing_loop = core::CompetingLoopEvidence{.frame = core::FrameId(20),
+                                                        .mahalanobis_squared = 31.0,
+                                                        .first_loop = core::CandidateId(7),
+                                                        .gain = 0.1 - Config{}.min_competing_gain};
+  const auto name = [&] { return core::name_of(decide(candidate(), evidence, {}, {})); };
+  EXPECT_EQ(name(), "AMBIGUOUS");
+  evidence.competing_loop->gain = -Config{}.min_competing_gain;
+  const auto verdict = decide(candidate(), evidence, {}, {});
+  EXPECT_EQ(core::name_of(verdict), "NOT");
+  EXPECT_EQ(core::stage_of(verdict), "competing");
+  EXPECT_NE(core::reason_of(verdict).find("odometry fits that place better (gain -6)"),
+            std::string::npos)
+      << core::reason_of(verdict);
+  evidence.competing_loop->gain.reset();
+  EXPECT_EQ(name(), "AMBIGUOUS") << "nothing was compared";
+}
+
 TEST(Decide, ACompetingPlaceWithAboutAsManyInliersIsAmbiguous) {
   core::Evidence evidence = good_evidence();
   evidence.geometry->num_inliers = 200;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <samewhere/verify/waiting_candidates.hpp>
@@ -8,11 +9,12 @@ namespace {
 
 // A later loop can decide it. A relocalization is no loop.
 bool is_worth_waiting(const core::LedgerRow& row) {
-  const auto* ambiguous = std::get_if<core::Ambiguous>(&row.verdict);
-  return ambiguous != nullptr && row.candidate.origin != core::Origin::kRelocalization &&
-         (ambiguous->stage == core::Refusal::kCompeting ||
-          ambiguous->stage == core::Refusal::kEvidence) &&
-         ambiguous->evidence.geometry && ambiguous->evidence.geometry->match_from_query;
+  const std::string_view stage = core::stage_of(row.verdict);
+  const auto& geometry = core::evidence_of(row.verdict).geometry;
+  return row.candidate.origin != core::Origin::kRelocalization &&
+         (stage == core::name_of(core::Refusal::kCompeting) ||
+          stage == core::name_of(core::Refusal::kEvidence)) &&
+         geometry && geometry->match_from_query;
 }
 
 std::optional<core::LedgerRow> competitor_of(const core::LedgerRow& row,

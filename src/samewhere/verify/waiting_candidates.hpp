@@ -10,8 +10,8 @@
 
 namespace samewhere::verify {
 
-// Candidates of earlier keyframes that were ambiguous, because of a competing hypothesis or for
-// want of evidence. They are decided again whenever a loop was closed, suspended or withdrawn. One
+// Candidates of earlier keyframes that are no loops because of a competing hypothesis or for want
+// of evidence. They are decided again whenever a loop was closed, suspended or withdrawn. One
 // becomes a loop if it passes all checks and the loops of the map tell its place from a look-alike;
 // it is rejected if the loops of the map contradict it, and may still become a loop after these are
 // withdrawn.

@@ -14,12 +14,17 @@ class MapWithLoops final : public WithoutMap {
  public:
   std::vector<core::CandidateId> closed;
   std::map<core::FrameId, core::OdometryEvidence> odometry;
+  std::optional<core::CompetingLoopEvidence> competing_loop;
 
   std::vector<core::CandidateId> loops() const override { return closed; }
   std::optional<core::OdometryEvidence> measure_odometry(
       const core::Candidate& candidate, const core::Sim3& /*match_from_query*/) const override {
     const auto found = odometry.find(candidate.match);
     return found == odometry.end() ? std::nullopt : std::optional(found->second);
+  }
+  std::optional<core::CompetingLoopEvidence> measure_competing_loop(
+      const core::Candidate& /*candidate*/, const core::Sim3& /*match_from_query*/) const override {
+    return competing_loop;
   }
 };
 
@@ -89,6 +94,22 @@ TEST_F(Waiting, IsRejectedByLoopsAndBecomesALoopAfterTheirWithdrawal) {
   const auto accepted = asked_again();
   ASSERT_EQ(accepted.size(), 1U);
   EXPECT_TRUE(core::is_loop(accepted[0].verdict));
+}
+
+TEST_F(Waiting, ThatALoopWithABetterFitRejectsItIsTakenBackWithThatLoop) {
+  map_.odometry[core::FrameId(3)] = kTold;
+  map_.closed = {core::CandidateId(7)};
+  map_.competing_loop = core::CompetingLoopEvidence{
+      .frame = core::FrameId(9), .mahalanobis_squared = 75.0, .gain = -25.0};
+  const core::LedgerRow row = row_of(50, 3);
+  ASSERT_EQ(core::name_of(row.verdict), "NOT");
+  waiting_.add({row});
+  EXPECT_TRUE(asked_again().empty()) << "that loop is still there";
+  map_.closed = {core::CandidateId(8)};
+  map_.competing_loop.reset();
+  const auto decided = asked_again();
+  ASSERT_EQ(decided.size(), 1U);
+  EXPECT_TRUE(core::is_loop(decided[0].verdict));
 }
 
 TEST_F(Waiting, TwoPlacesOfOneViewAreDecidedWhenLoopsRuleOneOut) {
