@@ -130,6 +130,45 @@ TEST(MatchPair, EmptyTablesHaveNoMatches) {
   EXPECT_TRUE(match_pair(none, view.features->descriptors, {}).empty());
 }
 
+// As the definition says, one by one. Descriptors of few different bits have many equal distances.
+TEST(MatchPair, PairsAreEachOthersFirstNearestAndClearlySo) {
+  cv::RNG random(7);
+  const Config config{.max_distance_bits = 20, .max_ratio = 0.9};
+  std::size_t num_matches = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    cv::Mat first = cv::Mat::zeros(random.uniform(1, 90), 32, CV_8U);
+    cv::Mat second = cv::Mat::zeros(random.uniform(1, 90), 32, CV_8U);
+    random.fill(first.colRange(0, 5), cv::RNG::UNIFORM, 0, 256);
+    random.fill(second.colRange(0, 5), cv::RNG::UNIFORM, 0, 256);
+    const auto nearest = [](const unsigned char* one, const cv::Mat& all, int but) {
+      int best = -1;
+      for (int k = 0; k < all.rows; ++k)
+        if (k != but &&
+            (best < 0 || distance_bits(one, all.ptr(k)) < distance_bits(one, all.ptr(best))))
+          best = k;
+      return best;
+    };
+    std::vector<std::pair<int, int>> expected;
+    for (int i = 0; i < first.rows; ++i) {
+      const int j = nearest(first.ptr(i), second, -1);
+      const int next = nearest(first.ptr(i), second, j);
+      const int bits = distance_bits(first.ptr(i), second.ptr(j));
+      if (bits > 20 || nearest(second.ptr(j), first, -1) != i) continue;
+      if (next < 0 || bits < 0.9 * distance_bits(first.ptr(i), second.ptr(next)))
+        expected.emplace_back(i, j);
+    }
+    std::vector<std::pair<int, int>> found;
+    for (const Match& match : match_pair(first, second, config)) {
+      found.emplace_back(match.first, match.second);
+      EXPECT_EQ(match.distance_bits,
+                distance_bits(first.ptr(match.first), second.ptr(match.second)));
+    }
+    EXPECT_EQ(found, expected) << "trial " << trial;
+    num_matches += found.size();
+  }
+  EXPECT_GT(num_matches, 100U);
+}
+
 TEST(MatchPair, APatternThatRepeatsIsRefusedByTheRatio) {
   const View view = extract(frame_of(textured_image(6)), {});
   cv::Mat twice;

@@ -31,10 +31,10 @@ using Parts = std::array<std::uint64_t, kDescriptorBytes / sizeof(std::uint64_t)
 }
 
 [[gnu::always_inline]] inline void count_all(const unsigned char* one, const unsigned char* all,
-                                             std::span<int> bits) {
+                                             std::span<std::int16_t> bits) {
   const Parts parts = parts_of(one);
-  for (int& to_one : bits) {
-    to_one = count_different(parts, all);
+  for (std::int16_t& to_one : bits) {
+    to_one = static_cast<std::int16_t>(count_different(parts, all));
     all += kDescriptorBytes;
   }
 }
@@ -53,7 +53,7 @@ SAMEWHERE_WITH_POPCNT int distance_with_popcnt(const unsigned char* a, const uns
 }
 
 SAMEWHERE_WITH_POPCNT void all_with_popcnt(const unsigned char* one, const unsigned char* all,
-                                           std::span<int> bits) {
+                                           std::span<std::int16_t> bits) {
   count_all(one, all, bits);
 }
 
@@ -63,7 +63,8 @@ int distance_bits(const unsigned char* a, const unsigned char* b) {
   return has_popcnt() ? distance_with_popcnt(a, b) : count_different(parts_of(a), b);
 }
 
-void distances_bits(const unsigned char* one, const unsigned char* all, std::span<int> bits) {
+void distances_bits(const unsigned char* one, const unsigned char* all,
+                    std::span<std::int16_t> bits) {
   return has_popcnt() ? all_with_popcnt(one, all, bits) : count_all(one, all, bits);
 }
 

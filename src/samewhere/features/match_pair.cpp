@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include <samewhere/core/errors.hpp>
@@ -7,52 +9,54 @@
 namespace samewhere::features {
 namespace {
 
-constexpr int kFar = std::numeric_limits<int>::max();
+constexpr std::int16_t kFar = std::numeric_limits<std::int16_t>::max();
 
-struct Nearest {
-  int index = -1;
-  int best_bits = kFar;
-  int second_bits = kFar;
+// Of each descriptor of the second image the nearest of the first, of equals the first one.
+struct NearestRows {
+  explicit NearestRows(std::size_t count) : bits(count, kFar), row(count, -1) {}
 
-  void offer(int candidate, int bits) {
-    if (bits >= second_bits) return;
-    if (bits < best_bits) {
-      second_bits = best_bits;
-      best_bits = bits;
-      index = candidate;
-    } else {
-      second_bits = bits;
+  void offer(std::int16_t candidate, const std::vector<std::int16_t>& distances) {
+    for (std::size_t j = 0; j < bits.size(); ++j) {
+      const bool is_nearer = distances[j] < bits[j];
+      bits[j] = is_nearer ? distances[j] : bits[j];
+      row[j] = is_nearer ? candidate : row[j];
     }
   }
+
+  std::vector<std::int16_t> bits;
+  std::vector<std::int16_t> row;
 };
+
+std::int16_t smallest(const std::vector<std::int16_t>& distances) {
+  std::int16_t least = kFar;
+  for (const std::int16_t bits : distances) least = std::min(least, bits);
+  return least;
+}
 
 }  // namespace
 
 std::vector<Match> match_pair(const cv::Mat& first, const cv::Mat& second, const Config& config) {
   core::require(second.empty() || second.isContinuous(), "descriptors lie one behind the other");
-  std::vector<Nearest> of_first(static_cast<std::size_t>(first.rows));
-  std::vector<Nearest> of_second(static_cast<std::size_t>(second.rows));
-  std::vector<int> bits(of_second.size());
+  core::require(first.rows <= kFar, "at most 32767 descriptors are matched");
+  std::vector<std::int16_t> distances(static_cast<std::size_t>(second.rows));
+  NearestRows of_second(distances.size());
+  std::vector<Match> clear;  // not yet mutual
   for (int i = 0; i < first.rows; ++i) {
-    distances_bits(first.ptr(i), second.ptr(), bits);
-    Nearest nearest;
-    for (int j = 0; j < second.rows; ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      nearest.offer(j, bits[k]);
-      of_second[k].offer(i, bits[k]);
-    }
-    of_first[static_cast<std::size_t>(i)] = nearest;
+    distances_bits(first.ptr(i), second.ptr(), distances);
+    of_second.offer(static_cast<std::int16_t>(i), distances);
+    const std::int16_t best = smallest(distances);
+    if (best > config.max_distance_bits) continue;
+    const auto nearest =
+        static_cast<std::size_t>(std::ranges::find(distances, best) - distances.begin());
+    distances[nearest] = kFar;
+    const std::int16_t next = smallest(distances);
+    if (next == kFar || best < config.max_ratio * next)
+      clear.push_back({i, static_cast<int>(nearest), best});
   }
-  std::vector<Match> matches;
-  for (int i = 0; i < first.rows; ++i) {
-    const Nearest& nearest = of_first[static_cast<std::size_t>(i)];
-    if (nearest.index < 0 || nearest.best_bits > config.max_distance_bits) continue;
-    const bool is_mutual = of_second[static_cast<std::size_t>(nearest.index)].index == i;
-    const bool is_clear =
-        nearest.second_bits == kFar || nearest.best_bits < config.max_ratio * nearest.second_bits;
-    if (is_mutual && is_clear) matches.push_back({i, nearest.index, nearest.best_bits});
-  }
-  return matches;
+  std::erase_if(clear, [&](const Match& match) {
+    return of_second.row[static_cast<std::size_t>(match.second)] != match.first;
+  });
+  return clear;
 }
 
 }  // namespace samewhere::features

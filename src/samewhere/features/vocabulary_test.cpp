@@ -43,7 +43,7 @@ cv::Mat seen_again(const cv::Mat& kinds, int times, core::Random& random) {
 TEST(Hamming, CountsTheBitsThatDiffer) {
   core::Random random(1);
   const cv::Mat all = random_descriptors(random, 50);
-  std::vector<int> bits(50);
+  std::vector<std::int16_t> bits(50);
   distances_bits(all.ptr(3), all.ptr(), bits);
   for (int i = 0; i < all.rows; ++i) {
     int expected = 0;
