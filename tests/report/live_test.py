@@ -148,7 +148,8 @@ def check_recognition(page, pictures):
 
 def check_loops(program, driver, scratch, pictures):
     folder = scratch / "seen-loops"
-    driver.get_log("browser")  # of pages whose server was ended
+    for log in ("browser", "performance"):
+        driver.get_log(log)  # of pages whose server was ended
     process = subprocess.Popen(command_of(program, "loops", folder, "--view", *FEW_FRAMES), stderr=subprocess.PIPE, text=True)
     try:
         url = url_of(process)
