@@ -111,7 +111,7 @@ def check_buffers(page):
 
 
 def check_end(page, folder, pictures):
-    page.check("at the end the page is that of the report", page.wait("return document.documentElement.dataset.mode === 'finished' && typeof samewhere !== 'undefined' && samewhere.run", 120))
+    page.check("at the end the page is that of the report", page.wait("return document.documentElement.dataset.mode === 'finished' && typeof samewhere !== 'undefined' && samewhere.run", 300))
     loops = json.loads((folder / "loops.json").read_text())
     page.check("its candidates are those of loops.json", page.shown() == len(loops["candidates"]), page.shown())
     num_frames = len((folder / "frames.csv").read_text().splitlines()) - 1
@@ -155,7 +155,7 @@ def check_loops(program, driver, scratch, pictures):
         url = url_of(process)
         page = LivePage(driver, url)
         check_recognition(page, pictures)
-        page.check("at the end it is a report", page.wait("return document.documentElement.dataset.mode === 'finished' && typeof samewhere !== 'undefined' && samewhere.run", 120))
+        page.check("at the end it is a report", page.wait("return document.documentElement.dataset.mode === 'finished' && typeof samewhere !== 'undefined' && samewhere.run", 300))
         page.check("with the candidates of loops.json", page.shown() == len(json.loads((folder / "loops.json").read_text())["candidates"]), page.shown())
         check_quiet(page, url)
         driver.get("about:blank")
